@@ -19,29 +19,31 @@ namespace dartcast {
 class SharedParticles {
  public:
   /// `width`: numbers of the user for each particle: the same on all ranks.
-  explicit SharedParticles(std::size_t width = 0) : width_(width) {}
+  explicit SharedParticles(std::size_t width = 0);
+  SharedParticles(const SharedParticles& other);
+  SharedParticles& operator=(const SharedParticles& other);
+  // One that was moved from can only be assigned to.
+  SharedParticles(SharedParticles&& other) noexcept;
+  SharedParticles& operator=(SharedParticles&& other) noexcept;
+  ~SharedParticles();
 
-  [[nodiscard]] std::size_t size() const { return ids_.size(); }
+  [[nodiscard]] std::size_t size() const { return particles_.size(); }
   /// Cells are those of the rank's own map: SharedEnvironment::whole() gives their handles in the whole.
   [[nodiscard]] const Particles& particles() const { return particles_; }
   /// In the order of adding, from 0.
-  [[nodiscard]] std::span<const std::uint64_t> ids() const { return ids_; }
+  [[nodiscard]] std::span<const std::uint64_t> ids() const;
   [[nodiscard]] std::size_t width() const { return width_; }
   /// Precondition: there is a particle of this index.
-  [[nodiscard]] std::span<double> user_data(std::size_t particle) {
-    return std::span(user_data_).subspan(particle * width_, width_);
-  }
-  [[nodiscard]] std::span<const double> user_data(std::size_t particle) const {
-    return std::span(user_data_).subspan(particle * width_, width_);
-  }
+  [[nodiscard]] std::span<double> user_data(std::size_t particle);
+  [[nodiscard]] std::span<const double> user_data(std::size_t particle) const;
 
  private:
   friend class SharedEnvironment;
+  struct Beside;
 
   std::size_t width_;
   Particles particles_;
-  std::vector<std::uint64_t> ids_;
-  std::vector<double> user_data_;
+  std::unique_ptr<Beside> beside_;
   std::uint64_t next_id_ = 0;
 };
 

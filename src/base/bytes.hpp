@@ -1,6 +1,7 @@
 // Values as bytes of this machine's kind, one after another. Not installed.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <span>
@@ -26,6 +27,10 @@ class ByteWriter {
   void put(const std::string& text) {
     put(static_cast<std::uint64_t>(text.size()));
     bytes_ += text;
+  }
+  /// As they are, without their number.
+  void put_bytes(std::span<const std::byte> bytes) {
+    bytes_.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   }
   [[nodiscard]] const std::string& bytes() const { return bytes_; }
   /// Keeps the memory.
@@ -53,6 +58,9 @@ class ByteReader {
     std::vector<T> values(count);
     if (count > 0) std::memcpy(values.data(), next(count * sizeof(T)), count * sizeof(T));
     return values;
+  }
+  std::span<const std::byte> take_bytes(std::size_t size) {
+    return {reinterpret_cast<const std::byte*>(next(size)), size};
   }
   [[nodiscard]] bool at_end() const { return bytes_.empty(); }
   std::string take_text() {

@@ -4,45 +4,43 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <string>
 #include <utility>
 
-#include "base/bytes.hpp"
-#include "base/kept_runs.hpp"
 #include "base/put_in_order.hpp"
+#include "base/table.hpp"
 #include "dartcast/error.hpp"
 #include "environment/audit_of_all.hpp"
 #include "environment/part_environment.hpp"
+#include "environment/table_travel.hpp"
 
 namespace dartcast {
 
-namespace {
+// The table beside the particles.
+struct SharedParticles::Beside : Table {
+  explicit Beside(std::size_t width) : id(add_column<std::uint64_t>()), user_data(add_column<double>(width)) {}
 
-// The arrays beside the particles.
-class SharedData final : public TravelData {
- public:
-  SharedData(std::vector<std::uint64_t>& ids, std::vector<double>& numbers, std::size_t width)
-      : ids_(ids), numbers_(numbers), width_(width) {}
-
-  [[nodiscard]] std::string leave(std::uint32_t i, std::uint32_t /*contacts*/) const override {
-    ByteWriter out;
-    out.put(ids_[i]);
-    for (std::size_t k = 0; k < width_; ++k) out.put(numbers_[i * width_ + k]);
-    return out.bytes();
-  }
-  void come(std::string_view data) override {
-    ByteReader in(data);
-    ids_.push_back(in.take<std::uint64_t>());
-    for (std::size_t k = 0; k < width_; ++k) numbers_.push_back(in.take<double>());
-  }
-
- private:
-  std::vector<std::uint64_t>& ids_;
-  std::vector<double>& numbers_;
-  std::size_t width_;
+  Column<std::uint64_t> id;
+  Column<double> user_data;
 };
 
-}  // namespace
+SharedParticles::SharedParticles(std::size_t width) : width_(width), beside_(std::make_unique<Beside>(width)) {}
+SharedParticles::SharedParticles(const SharedParticles& other)
+    : width_(other.width_),
+      particles_(other.particles_),
+      beside_(std::make_unique<Beside>(*other.beside_)),
+      next_id_(other.next_id_) {}
+SharedParticles& SharedParticles::operator=(const SharedParticles& other) { return *this = SharedParticles(other); }
+SharedParticles::SharedParticles(SharedParticles&& other) noexcept = default;
+SharedParticles& SharedParticles::operator=(SharedParticles&& other) noexcept = default;
+SharedParticles::~SharedParticles() = default;
+
+std::span<const std::uint64_t> SharedParticles::ids() const { return std::as_const(*beside_)[beside_->id]; }
+std::span<double> SharedParticles::user_data(std::size_t particle) {
+  return (*beside_)[beside_->user_data].subspan(particle * width_, width_);
+}
+std::span<const double> SharedParticles::user_data(std::size_t particle) const {
+  return std::as_const(*beside_)[beside_->user_data].subspan(particle * width_, width_);
+}
 
 struct SharedEnvironment::Members {
   Members(MeshPart mesh, Ranks& all, Threads threads)
@@ -68,15 +66,16 @@ const Environment& SharedEnvironment::environment() const { return members_->env
 Cell SharedEnvironment::whole(Cell here) const { return members_->steps.cells().whole(here); }
 
 std::vector<Place> SharedEnvironment::add(SharedParticles& particles, std::span<const Vec3> positions) {
+  SharedParticles::Beside& beside = *particles.beside_;
   std::vector<Place> places;
   for (const AddResult& a : members_->steps.add(particles.particles_, positions)) {
     places.push_back(a.location.place);
     if (a.location.place != Place::free) continue;
-    if (a.particle == particles.ids_.size())
-      particles.ids_.push_back(particles.next_id_);  // else it is on another rank
-    ++particles.next_id_;
+    const std::uint64_t id = particles.next_id_++;
+    if (a.particle != beside.rows()) continue;  // it is on another rank
+    beside.append_zeros(1);
+    beside[beside.id].back() = id;
   }
-  particles.user_data_.resize(particles.size() * particles.width_);
   return places;
 }
 
@@ -88,23 +87,20 @@ SharedStep SharedEnvironment::advance(SharedParticles& particles, std::span<cons
   const ContactCallback stay = [](const Contact&, std::span<const WallHit>, std::span<const WallHit>) {
     return AfterContact{};
   };
-  SharedData data(particles.ids_, particles.user_data_, particles.width_);
+  TableTravel data(*particles.beside_);
   std::vector<std::uint8_t> gone;
   const std::size_t before = particles.size();
   SharedStep step;
   step.report = members_->steps.advance(particles.particles_, targets, respond ? respond : stay, options, data, gone);
-  for (const Contact& c : step.report.contacts.contacts) step.contact_ids.push_back(particles.ids_[c.particle]);
+  for (const Contact& c : step.report.contacts.contacts) step.contact_ids.push_back(particles.ids()[c.particle]);
   step.left = static_cast<std::uint64_t>(std::count(gone.begin(), gone.end(), 1));
   step.come = particles.size() - before;
   particles.particles_.remove(gone);
-  const KeptRuns runs(gone);
-  runs.keep_in(particles.ids_);
-  runs.keep_in(particles.user_data_, particles.width_);
-  const std::vector<std::uint32_t> order = order_of(particles.ids_);
+  particles.beside_->remove(gone);
+  const std::vector<std::uint32_t> order = order_of(particles.ids());
   if (order.empty()) return step;
   particles.particles_.reorder(order);
-  put_in_order(particles.ids_, order);
-  put_in_order(particles.user_data_, order, particles.width_);
+  particles.beside_->reorder(order);
   return step;
 }
 

@@ -37,15 +37,16 @@ class CheckpointWriter {
     static_assert(std::is_arithmetic_v<T> && !std::is_same_v<T, bool>);
     text_.append(reinterpret_cast<const char*>(&v), sizeof v);
   }
+  void count(std::uint64_t& n) { value(n); }
   template <class T, class Each>
   void list(std::vector<T>& values, Each&& each) {
-    std::uint64_t count = values.size();
-    value(count);
+    std::uint64_t size = values.size();
+    count(size);
     for (T& v : values) each(v);
   }
   void characters(std::string& s) {
-    std::uint64_t count = s.size();
-    value(count);
+    std::uint64_t size = s.size();
+    count(size);
     text_ += s;
   }
   // Whether there is a last part, which is left out where nothing is in it.
@@ -67,20 +68,22 @@ class CheckpointReader {
     std::memcpy(&v, text_.data(), sizeof v);
     text_.remove_prefix(sizeof v);
   }
+  void count(std::uint64_t& n) {
+    value(n);
+    need(n);  // every entry takes a byte at least
+  }
   template <class T, class Each>
   void list(std::vector<T>& values, Each&& each) {
-    std::uint64_t count = 0;
-    value(count);
-    need(count);  // every entry takes a byte at least
-    values.assign(count, T{});
+    std::uint64_t size = 0;
+    count(size);
+    values.assign(size, T{});
     for (T& v : values) each(v);
   }
   void characters(std::string& s) {
-    std::uint64_t count = 0;
-    value(count);
-    need(count);
-    s = text_.substr(0, count);
-    text_.remove_prefix(count);
+    std::uint64_t size = 0;
+    count(size);
+    s = text_.substr(0, size);
+    text_.remove_prefix(size);
   }
   [[nodiscard]] bool has_more(bool /*filled*/) const { return !at_end(); }
   [[nodiscard]] bool at_end() const { return text_.empty(); }
@@ -130,15 +133,31 @@ void fields(Archive& a, Weights& weights) {
   for (double& w : weights) a.value(w);
 }
 
+// All but the user data.
 template <class Archive>
-void fields(Archive& a, ParticleSystemState::Particle& p) {
-  a.value(p.id);
-  fields(a, p.state);
-  fields(a, p.held_weights);
-  fields(a, p.velocity);
-  value_as<std::uint8_t>(a, p.fate);
-  values(a, p.contacts, p.radius);
-  if (p.fate > ParticleStatus::escaped) throw Error("a particle has an unknown status");
+void fields(Archive& a, SavedParticles& p) {
+  std::uint64_t rows = p.rows();
+  a.count(rows);
+  p.append_zeros(rows - p.rows());
+  for (std::size_t i = 0; i < rows; ++i) {
+    a.value(p[p.id][i]);
+    fields(a, p[p.state][i]);
+    fields(a, p[p.held_weights][i]);
+    fields(a, p[p.velocity][i]);
+    value_as<std::uint8_t>(a, p[p.fate][i]);
+    values(a, p[p.contact_count][i], p[p.radius][i]);
+    if (p[p.fate][i] > ParticleStatus::escaped) throw Error("a particle has an unknown status");
+  }
+}
+
+// How much a particle has is seen from all of it.
+template <class Archive>
+void user_data(Archive& a, SavedParticles& p) {
+  std::vector<double> numbers(p[p.user_data].begin(), p[p.user_data].end());
+  a.list(numbers, [&](double& d) { a.value(d); });
+  if (p.rows() > 0) p.set_width(p.user_data, numbers.size() / p.rows());
+  if (p[p.user_data].size() != numbers.size()) throw Error("its particles do not have the same amount of user data");
+  std::copy(numbers.begin(), numbers.end(), p[p.user_data].begin());
 }
 
 template <class Archive>
@@ -242,7 +261,7 @@ void fields(Archive& a, ParticleSystemState& s) {
   StateHash::Words gone = s.gone.words();
   values(a, s.steps, s.next_id, gone[0], gone[1]);
   s.gone = StateHash(gone);
-  a.list(s.particles, [&](ParticleSystemState::Particle& p) { fields(a, p); });
+  fields(a, s.table);
   fields(a, s.totals);
   a.list(s.impulses, [&](CachedImpulse& k) { fields(a, k); });
 }
@@ -311,8 +330,10 @@ void later_fields(Archive& a, SimulationState& s) {
   std::vector<CatheterCheckpoint>& catheters = s.catheters.catheters;
   const bool walls = std::any_of(catheters.begin(), catheters.end(), [](const auto& c) { return !c.walls.empty(); });
   const bool statistics = has_statistics(s.statistics);
-  if (!a.has_more(statistics || walls || !s.bodies.impulses.empty() || !s.particles.user_data.empty())) return;
-  a.list(s.particles.user_data, [&](double& d) { a.value(d); });
+  if (!a.has_more(statistics || walls || !s.bodies.impulses.empty() ||
+                  !s.particles.table[s.particles.table.user_data].empty()))
+    return;
+  user_data(a, s.particles.table);
   a.list(s.bodies.impulses, [&](CachedImpulse& k) { fields(a, k); });
   for (CatheterCheckpoint& c : catheters) {
     a.list(c.walls, [&](ChainWall& w) {
@@ -387,7 +408,7 @@ Checkpoint parse(const std::string& text, const RunIdentity& run) {
 template <class Archive>
 void part_fields(Archive& a, ParticleSystemState& part) {
   fields(a, part);
-  a.list(part.user_data, [&](double& d) { a.value(d); });
+  user_data(a, part.table);
 }
 
 ParticleSystemState parse_part(const std::string& text, std::uint64_t expected) {

@@ -14,7 +14,6 @@
 
 #include "base/are_several.hpp"
 #include "base/bytes.hpp"
-#include "base/kept_runs.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/report.hpp"
 #include "formats/file_write.hpp"
@@ -99,15 +98,9 @@ void RunOutput::add_parts(Checkpoint& checkpoint) const {
 
 void RunOutput::keep_own(ParticleSystemState& state) const {
   if (recording_options_.environment_pieces > 1) return;  // whose they are is seen in the environment
-  const std::size_t width = scene_.user_data.size();
-  const std::vector<std::uint8_t> gone = [&] {
-    std::vector<std::uint8_t> marks;
-    for (const auto& p : state.particles) marks.push_back(share_.holds(p.id) ? 0 : 1);
-    return marks;
-  }();
-  const KeptRuns runs(gone);
-  runs.keep_in(state.particles);
-  runs.keep_in(state.user_data, width);
+  std::vector<std::uint8_t> gone;
+  for (const std::uint64_t id : state.table[state.table.id]) gone.push_back(share_.holds(id) ? 0 : 1);
+  state.table.remove(gone);
 }
 
 // Waits for the other ranks, or throws what one of them has failed of.
@@ -240,8 +233,7 @@ void RunOutput::write_frame(const Simulation& simulation) {
   auto checkpoint = std::make_shared<Checkpoint>(Checkpoint{
       identity_, simulation.checkpoint().state(), recording_->progress(), summary_.held, audited, std::move(parts),
       solids_->progress(), statistics_->progress(), report_ ? report_->progress() : ReportProgress{}});
-  const ParticleSystemState& particles = checkpoint->simulation.particles;
-  writing_->add(particles.particles.size() * sizeof(ParticleSystemState::Particle), [checkpoint, path = file()] {
+  writing_->add(checkpoint->simulation.particles.table.bytes(), [checkpoint, path = file()] {
     write_checkpoint(path, *checkpoint);
     remove_earlier_parts(path.parent_path(), checkpoint->simulation.particles.steps);
   });

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "base/are_several.hpp"
-#include "base/kept_runs.hpp"
 #include "complex/simplex.hpp"
 #include "dartcast/error.hpp"
 #include "simulation/polyline.hpp"
@@ -103,7 +102,8 @@ ParticleSystem::ParticleSystem(Environment& environment, const SimulationOptions
     : environment_(environment),
       options_(options),
       share_(options.ranks),
-      responses_(responses_of(options, environment.map())) {
+      responses_(responses_of(options, environment.map())),
+      set_(options.user_data.size()) {
   check(options);
   if (environment.map().dimension() == 2 && options.gravity.z != 0.0)
     throw InvalidArgument(fmt::format("simulation: gravity is ({}, {}, {}): in the plane its z must be 0",
@@ -188,19 +188,19 @@ void ParticleSystem::advance_segment(unsigned segment) {
   }
   const ScopeTimer timer(totals_.seconds_detect);
   const ContactCallback respond = response(dt);
-  if (spheres_ == 0) {
+  if (set_.spheres == 0) {
     StepReport report = part_ != nullptr ? advance_in_part(acceleration(dt))
                         : options_.wall_motion == WallMotion::simultaneous
-                            ? simultaneous_stepper_.advance(environment_, particles_, targets_, respond, options_.step)
-                            : environment_.advance(particles_, targets_, respond, options_.step);
-    hold_stopped(report, responses_, velocities_, fates_, options_.dt, acceleration(dt));
+                            ? simultaneous_stepper_.advance(environment_, set_.states, targets_, respond, options_.step)
+                            : environment_.advance(set_.states, targets_, respond, options_.step);
+    hold_stopped(report, responses_, set_.velocities(), set_.fates(), options_.dt, acceleration(dt));
     append_segment(last_.report, std::move(report), segment, options_.substeps);
     return;
   }
   const std::span<const double> clearances = collides() ? clearances_ : std::span<const double>();
   SphereReport report =
-      stepper_.advance(environment_, particles_, radii_, targets_, respond, options_.step, clearances);
-  hold_stopped(report.step, responses_, velocities_, fates_, options_.dt, acceleration(dt));
+      stepper_.advance(environment_, set_.states, radii(), targets_, respond, options_.step, clearances);
+  hold_stopped(report.step, responses_, set_.velocities(), set_.fates(), options_.dt, acceleration(dt));
   add_solved_contacts(report.step);
   append_segment(last_.report, std::move(report.step), segment, options_.substeps);
   for (const SphereOverlap& o : report.overlaps) totals_.deepest_in_wall = std::max(totals_.deepest_in_wall, o.depth);
@@ -210,9 +210,9 @@ void ParticleSystem::advance_segment(unsigned segment) {
 
 // Impulses of other spheres change velocities, too: contacts of pushed spheres know of no acceleration.
 ContactCallback ParticleSystem::response(double dt) {
-  ContactCallback free = respond_with(responses_, velocities_, fates_, options_.dt, acceleration(dt));
+  ContactCallback free = respond_with(responses_, set_.velocities(), set_.fates(), options_.dt, acceleration(dt));
   if (!collides()) return free;
-  return [this, free, pushed = respond_with(responses_, velocities_, fates_, options_.dt)](
+  return [this, free, pushed = respond_with(responses_, set_.velocities(), set_.fates(), options_.dt)](
              const Contact& contact, std::span<const WallHit> walls, std::span<const WallHit> earlier) {
     return (pushed_[contact.particle] != 0 ? pushed : free)(contact, walls, earlier);
   };
@@ -223,8 +223,8 @@ void ParticleSystem::count_contacts() {
   last_.contact_ids.reserve(list.contacts.size());
   last_.contact_sources.reserve(list.contacts.size());
   for (const Contact& c : list.contacts) {
-    last_.contact_ids.push_back(ids_[c.particle]);
-    contact_counts_[c.particle] += contact_counts_[c.particle] == UINT32_MAX ? 0 : 1;
+    last_.contact_ids.push_back(ids()[c.particle]);
+    set_.contact_counts()[c.particle] += set_.contact_counts()[c.particle] == UINT32_MAX ? 0 : 1;
     const WallHit& wall = list.walls_of(c).front();
     last_.contact_sources.push_back(environment_.map().source(wall.face.cell));
     ++totals_.contacts_by_patch[wall.patch.value];
@@ -232,50 +232,32 @@ void ParticleSystem::count_contacts() {
 }
 
 void ParticleSystem::mark_held() {
-  std::fill(held_.begin(), held_.end(), std::uint8_t{0});  // those that left are not removed yet
-  for (const HeldParticle& h : last_.report.held) held_[h.particle] = 1;
+  std::fill(set_.held().begin(), set_.held().end(), std::uint8_t{0});  // those that left are not removed yet
+  for (const HeldParticle& h : last_.report.held) set_.held()[h.particle] = 1;
 }
 
 void ParticleSystem::remove_gone() {
-  std::vector<std::uint8_t> gone(particles_.size(), 0);
+  std::vector<std::uint8_t> gone(set_.states.size(), 0);
   std::uint64_t absorbed = 0;
   const std::vector<Contact>& contacts = last_.report.contacts.contacts;
   std::uint32_t next = 0;  // the first contact of a particle behind the last one that left
   for (std::size_t i = 0; i < gone.size(); ++i) {
     gone[i] = departed_.empty() ? 0 : departed_[i];
-    if (!leaves(fates_[i]) || gone[i] != 0) continue;
+    if (!leaves(set_.fates()[i]) || gone[i] != 0) continue;
     gone[i] = 1;
     while (next < contacts.size() && contacts[next].particle <= i) ++next;
-    last_.left.push_back({ids_[i], fates_[i], particles_[i].position, next - 1});
-    ++(fates_[i] == ParticleStatus::absorbed ? absorbed : last_.escaped);
-    gone_.add(ids_[i], whole_state(i), velocities_[i], static_cast<std::uint64_t>(fates_[i]));
+    last_.left.push_back({ids()[i], set_.fates()[i], set_.states[i].position, next - 1});
+    ++(set_.fates()[i] == ParticleStatus::absorbed ? absorbed : last_.escaped);
+    gone_.add(ids()[i], whole_state(i), set_.velocities()[i], static_cast<std::uint64_t>(set_.fates()[i]));
   }
   last_.absorbed += absorbed;
   totals_.absorbed += absorbed;
   totals_.escaped += last_.escaped;
   if (absorbed + last_.escaped == 0 && departed_.empty()) return;
-  particles_.remove(gone);
-  remove_marked(gone);
-  departed_.clear();
-  if (part_ != nullptr) put_in_order_of_ids();
-}
-
-// Removes the same particles from the arrays beside the particles.
-void ParticleSystem::remove_marked(std::span<const std::uint8_t> marks) {
-  const KeptRuns runs(marks);
-  runs.keep_in(ids_);
-  runs.keep_in(velocities_);
-  runs.keep_in(fates_);
-  runs.keep_in(contact_counts_);
-  runs.keep_in(radii_);
-  runs.keep_in(held_);
-  runs.keep_in(user_data_, width());
+  set_.remove(gone);
   clear_.clear();
-  count_spheres();
-}
-
-void ParticleSystem::count_spheres() {
-  spheres_ = static_cast<std::size_t>(std::count_if(radii_.begin(), radii_.end(), [](double r) { return r > 0.0; }));
+  departed_.clear();
+  if (part_ != nullptr) set_.put_in_order_of_ids();
 }
 
 }  // namespace dartcast

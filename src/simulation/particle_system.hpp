@@ -15,6 +15,7 @@
 #include "environment/part_environment.hpp"
 #include "simulation/component.hpp"
 #include "simulation/flow_aim.hpp"
+#include "simulation/particle_set.hpp"
 #include "simulation/particle_share.hpp"
 #include "simulation/seeding.hpp"
 #include "simulation/simulation_state.hpp"
@@ -91,7 +92,7 @@ class ParticleSystem final : public SimulationComponent {
   /// Takes the step of all ranks in place of this one's.
   void set_last_step(SimulationStep step) { last_ = std::move(step); }
   [[nodiscard]] const ParticleShare& share() const { return share_; }
-  [[nodiscard]] std::uint64_t next_id() const { return next_id_; }
+  [[nodiscard]] std::uint64_t next_id() const { return set_.next_id; }
   [[nodiscard]] const UpdateReport& last_update() const { return last_update_; }  ///< of the last edit
   [[nodiscard]] std::span<const std::uint64_t> absorbed_by_edit() const {
     return absorbed_by_edit_;
@@ -99,18 +100,19 @@ class ParticleSystem final : public SimulationComponent {
   [[nodiscard]] double time() const { return static_cast<double>(steps_) * options_.dt; }
   [[nodiscard]] std::uint64_t steps() const { return steps_; }
   [[nodiscard]] bool deforms() const { return deformation_.has_value(); }
-  [[nodiscard]] const Particles& particles() const { return particles_; }
-  [[nodiscard]] std::span<const std::uint64_t> ids() const { return ids_; }
-  [[nodiscard]] std::span<const Vec3> velocities() const { return velocities_; }
-  [[nodiscard]] std::span<const ParticleStatus> fates() const { return fates_; }
-  [[nodiscard]] std::span<const std::uint32_t> contact_counts() const { return contact_counts_; }
-  [[nodiscard]] std::span<const double> radii() const { return radii_; }
-  [[nodiscard]] std::span<const std::uint8_t> held() const { return held_; }
+  [[nodiscard]] const Particles& particles() const { return set_.states; }
+  [[nodiscard]] const ParticleTable& table() const { return set_.table; }
+  [[nodiscard]] std::span<const std::uint64_t> ids() const { return table()[set_.table.id]; }
+  [[nodiscard]] std::span<const Vec3> velocities() const { return table()[set_.table.velocity]; }
+  [[nodiscard]] std::span<const ParticleStatus> fates() const { return table()[set_.table.fate]; }
+  [[nodiscard]] std::span<const std::uint32_t> contact_counts() const { return table()[set_.table.contact_count]; }
+  [[nodiscard]] std::span<const double> radii() const { return table()[set_.table.radius]; }
+  [[nodiscard]] std::span<const std::uint8_t> held() const { return table()[set_.table.held]; }
   [[nodiscard]] std::span<double> user_data(std::size_t i) {
-    return std::span(user_data_).subspan(i * width(), width());
+    return set_.table[set_.table.user_data].subspan(i * width(), width());
   }
   [[nodiscard]] std::span<const double> user_data(std::size_t i) const {
-    return std::span(user_data_).subspan(i * width(), width());
+    return table()[set_.table.user_data].subspan(i * width(), width());
   }
   [[nodiscard]] const SimulationTotals& totals() const { return totals_; }
   [[nodiscard]] const Collider& collider() const { return collider_; }
@@ -141,8 +143,6 @@ class ParticleSystem final : public SimulationComponent {
   void count_contacts();
   void mark_held();
   void remove_gone();
-  void remove_marked(std::span<const std::uint8_t> marks);
-  void count_spheres();
   // In particle_system_fields.cpp.
   void set_fields_to(double begin, double duration);
   void aim_by_runge_kutta(double dt, bool moving);
@@ -158,13 +158,11 @@ class ParticleSystem final : public SimulationComponent {
   [[nodiscard]] Vec3 accelerated(const Vec3& v, const Vec3& flow, const Vec3& force, const Forces& forces) const;
   [[nodiscard]] Acceleration acceleration(double dt) const;
   // In particle_system_add.cpp.
-  class SystemAddition;
   void inject();
   void check_motion(const Vec3& velocity, double radius, std::string_view whose) const;
   void check_user_data(std::span<const double> values) const;
   std::vector<AddResult> add_own(std::span<const Vec3> positions);
   void complete_next(const AddResult& added, const Vec3& velocity, double radius, std::span<const double> user_data);
-  void complete(std::uint64_t id, const Vec3& velocity, double radius, std::span<const double> user_data);
   template <class Sampler>
   void add_sampled(const Sampler& sampler, std::size_t count, const Vec3& velocity, double radius,
                    std::span<const double> user_data);
@@ -172,22 +170,20 @@ class ParticleSystem final : public SimulationComponent {
   std::vector<std::uint64_t> place(const Sampler& sampler, std::uint64_t first, std::uint64_t count);
   [[nodiscard]] std::size_t width() const { return options_.user_data.size(); }
   // In particle_system_part.cpp.
-  class PartData;
   [[nodiscard]] std::optional<SampledPart> sampled_part() const;
   [[nodiscard]] ParticleState whole_state(std::size_t i) const;
   StepReport advance_in_part(const Acceleration& acceleration);
   template <class Sampler>
   std::vector<std::uint64_t> place_in_part(const Sampler& sampler, std::uint64_t first, std::uint64_t count);
   [[nodiscard]] std::vector<std::uint64_t> of_all_ranks(const std::vector<std::uint64_t>& ids) const;
-  void put_in_order_of_ids();
   // In particle_system_edit.cpp.
   void remove_absorbed(const UpdateReport& report, std::span<const ParticleState> before);
   // In particle_system_checkpoint.cpp.
   void stand_at(std::uint64_t steps);
-  [[nodiscard]] bool is_mine(const ParticleSystemState::Particle& p) const;
-  void put_in_place_of_all(const ParticleSystemState& saved);
+  [[nodiscard]] bool is_mine(std::uint64_t id, const ParticleState& state) const;
+  void put_in_place_of_all(const SavedParticles& saved);
   // With collisions, in particle_system_collide.cpp.
-  [[nodiscard]] bool collides() const { return options_.collisions && spheres_ > 0; }
+  [[nodiscard]] bool collides() const { return options_.collisions && set_.spheres > 0; }
   [[nodiscard]] double mass(std::size_t i) const;
   [[nodiscard]] bool meets_bodies() const { return bodies_ != nullptr && bodies_->size() > 0; }
   void collide(double dt, bool moving);
@@ -214,16 +210,8 @@ class ParticleSystem final : public SimulationComponent {
   std::vector<Vec3> next_vertices_;
   std::vector<Inlet> inlets_;
 
-  Particles particles_;
-  std::vector<std::uint64_t> ids_;
-  std::vector<Vec3> velocities_;
-  std::vector<ParticleStatus> fates_;
-  std::vector<std::uint32_t> contact_counts_;
-  std::vector<double> radii_;
-  std::vector<std::uint8_t> held_;
+  ParticleSet set_;
   std::vector<std::uint8_t> departed_;  // in this step, to other ranks; empty: none
-  std::vector<double> user_data_;       // particle by particle
-  std::size_t spheres_ = 0;             // of a radius above 0
   std::vector<Vec3> targets_;
   SphereStepper stepper_;
   SimultaneousStepper simultaneous_stepper_;
@@ -244,7 +232,6 @@ class ParticleSystem final : public SimulationComponent {
   std::vector<WallContact> walls_;
   ContactList solved_;                // of this segment, with walls whose impulses the solver gave
   std::vector<std::uint8_t> pushed_;  // by particle: whether the solver changed its way
-  std::uint64_t next_id_ = 0;
   std::uint64_t steps_ = 0;
   std::uint64_t absorbed_between_ = 0;  // by edits since the last step
   SimulationStep last_;

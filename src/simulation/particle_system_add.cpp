@@ -10,7 +10,6 @@
 
 #include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
-#include "environment/addition.hpp"
 #include "simulation/particle_system.hpp"
 #include "simulation/timer.hpp"
 
@@ -67,56 +66,15 @@ void ParticleSystem::add_inlet(Patch patch, double rate, const Vec3& velocity, d
                      {user_data.begin(), user_data.end()}});
 }
 
-// Undoes an addition to all lists of particles where an exception ends it.
-class ParticleSystem::SystemAddition {
- public:
-  explicit SystemAddition(ParticleSystem& system)
-      : system_(system),
-        particles_(system.particles_),
-        before_(system.particles_.size()),
-        next_id_(system.next_id_),
-        spheres_(system.spheres_) {}
-  SystemAddition(const SystemAddition&) = delete;
-  SystemAddition& operator=(const SystemAddition&) = delete;
-  ~SystemAddition() {
-    if (kept_) return;
-    const auto cut = [](auto& values, std::size_t size) {
-      if (values.size() > size) values.resize(size);
-    };
-    cut(system_.ids_, before_);
-    cut(system_.velocities_, before_);
-    cut(system_.fates_, before_);
-    cut(system_.contact_counts_, before_);
-    cut(system_.radii_, before_);
-    cut(system_.held_, before_);
-    cut(system_.user_data_, before_ * system_.width());
-    system_.next_id_ = next_id_;
-    system_.spheres_ = spheres_;
-  }
-  /// The addition is done.
-  void keep() {
-    particles_.keep();
-    kept_ = true;
-  }
-
- private:
-  ParticleSystem& system_;
-  Addition particles_;
-  std::size_t before_;
-  std::uint64_t next_id_;
-  std::size_t spheres_;
-  bool kept_ = false;
-};
-
 std::vector<AddResult> ParticleSystem::add(std::span<const Vec3> positions, const Vec3& velocity, double radius,
                                            std::span<const double> user_data) {
   check_motion(velocity, radius, "a particle's");
   check_user_data(user_data);
-  SystemAddition addition(*this);
+  SetAddition addition(set_);
   std::vector<AddResult> added = add_own(positions);
   for (const AddResult& a : added) complete_next(a, velocity, radius, user_data);
   addition.keep();
-  totals_.start = next_id_ - totals_.injected;
+  totals_.start = set_.next_id - totals_.injected;
   return added;
 }
 
@@ -130,30 +88,30 @@ std::vector<AddResult> ParticleSystem::add(std::span<const Vec3> positions, std:
     const bool good = is_finite(velocities[i]) && !leaves_plane(environment_, velocities[i]) && is_radius(radii[i]);
     if (!good) check_motion(velocities[i], radii[i], fmt::format("particle {}'s", i));
   }
-  SystemAddition addition(*this);
+  SetAddition addition(set_);
   std::vector<AddResult> added = add_own(positions);
   for (std::size_t i = 0; i < added.size(); ++i) complete_next(added[i], velocities[i], radii[i], user_data);
   addition.keep();
-  totals_.start = next_id_ - totals_.injected;
+  totals_.start = set_.next_id - totals_.injected;
   return added;
 }
 
 // Adds those of this rank to the environment, and says of all where they are.
 std::vector<AddResult> ParticleSystem::add_own(std::span<const Vec3> positions) {
-  if (share_.has_all()) return environment_.add(particles_, positions);
-  if (part_ != nullptr) return part_->add(particles_, positions);
+  if (share_.has_all()) return environment_.add(set_.states, positions);
+  if (part_ != nullptr) return part_->add(set_.states, positions);
   const std::vector<Location> locations = environment_.locate(positions);
   std::vector<AddResult> added(positions.size());
   std::vector<Vec3> own;
   std::vector<std::size_t> which;
-  std::uint64_t id = next_id_;
+  std::uint64_t id = set_.next_id;
   for (std::size_t i = 0; i < positions.size(); ++i) {
     added[i].location = locations[i];
     if (locations[i].place != Place::free || !share_.holds(id++)) continue;
     own.push_back(positions[i]);
     which.push_back(i);
   }
-  const std::vector<AddResult> results = environment_.add(particles_, own);
+  const std::vector<AddResult> results = environment_.add(set_.states, own);
   for (std::size_t k = 0; k < which.size(); ++k) added[which[k]].particle = results[k].particle;
   return added;
 }
@@ -162,22 +120,8 @@ std::vector<AddResult> ParticleSystem::add_own(std::span<const Vec3> positions) 
 void ParticleSystem::complete_next(const AddResult& added, const Vec3& velocity, double radius,
                                    std::span<const double> user_data) {
   if (added.location.place != Place::free) return;
-  const std::uint64_t id = next_id_++;
-  if (added.particle != AddResult().particle) complete(id, velocity, radius, user_data);
-}
-
-// Completes the next one in the environment's set.
-void ParticleSystem::complete(std::uint64_t id, const Vec3& velocity, double radius,
-                              std::span<const double> user_data) {
-  ids_.push_back(id);
-  velocities_.push_back(velocity);
-  fates_.push_back(ParticleStatus::alive);
-  contact_counts_.push_back(0);
-  radii_.push_back(radius);
-  held_.push_back(0);
-  user_data_.insert(user_data_.end(), user_data.begin(), user_data.end());
-  user_data_.resize(ids_.size() * width());
-  if (radius > 0.0) ++spheres_;
+  const std::uint64_t id = set_.next_id++;
+  if (added.particle != AddResult().particle) set_.complete(id, {velocity, radius, user_data});
 }
 
 // Sampled points are rounded: one that fell out of its simplex is drawn again, with the next numbers of the same id.
@@ -185,15 +129,16 @@ template <class Sampler>
 void ParticleSystem::add_sampled(const Sampler& sampler, std::size_t count, const Vec3& velocity, double radius,
                                  std::span<const double> user_data) {
   constexpr std::size_t at_once = std::size_t{1} << 20U;
-  SystemAddition addition(*this);
+  SetAddition addition(set_);
   while (count > 0) {
     const std::size_t some = std::min(count, at_once);
-    const auto placed = part_ != nullptr ? place_in_part(sampler, next_id_, some) : place(sampler, next_id_, some);
-    for (const std::uint64_t id : placed) complete(id, velocity, radius, user_data);
-    next_id_ += some;
+    const auto placed =
+        part_ != nullptr ? place_in_part(sampler, set_.next_id, some) : place(sampler, set_.next_id, some);
+    for (const std::uint64_t id : placed) set_.complete(id, {velocity, radius, user_data});
+    set_.next_id += some;
     count -= some;
   }
-  if (part_ != nullptr) put_in_order_of_ids();
+  if (part_ != nullptr) set_.put_in_order_of_ids();
   addition.keep();
 }
 
@@ -209,7 +154,7 @@ std::vector<std::uint64_t> ParticleSystem::place(const Sampler& sampler, std::ui
     int tries = 0;
     while (true) {
       const std::optional<Sample> s = sampler.sample(environment_.complex(), random);
-      if (s && environment_.add(particles_, s->simplex, flushed(s->position))) break;
+      if (s && environment_.add(set_.states, s->simplex, flushed(s->position))) break;
       if (++tries == max_tries)
         throw InvalidArgument(
             "simulation: random points fall outside the free cells again and again: their cells are too thin or not "
@@ -227,7 +172,7 @@ void ParticleSystem::add_random(std::size_t count, const Vec3& velocity, double 
   if (count > 0)
     add_sampled(VolumeSampler(environment_.complex(), environment_.threads(), sampled_part()), count, velocity, radius,
                 user_data);
-  totals_.start = next_id_ - totals_.injected;
+  totals_.start = set_.next_id - totals_.injected;
 }
 
 void ParticleSystem::inject() {

@@ -29,12 +29,12 @@ inline Vec3 ParticleSystem::accelerated(const Vec3& v, const Vec3& flow, const V
 // Most particles of a flow are aimed four at a time, and most of those without one in a short loop; the others one by
 // one.
 void ParticleSystem::aim(double dt, bool moving) {
-  targets_.resize(particles_.size());
+  targets_.resize(set_.states.size());
   const Forces forces = forces_of(dt);
   const bool in_fours = field_ && !force_ && field_->place() == FieldPlace::points;
   const bool flies = !field_ && !force_;
   const detail::FlowScene scene = in_fours ? flow_scene(forces, moving) : detail::FlowScene{};
-  parallel_for(particles_.size(), aim_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
+  parallel_for(set_.states.size(), aim_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
     std::array<std::uint8_t, aim_grain / 4> aimed{};
     if (in_fours) aim_in_flow(scene, begin, end, aimed);
     if (flies) return aim_in_flight(forces, begin, end, moving);
@@ -45,21 +45,22 @@ void ParticleSystem::aim(double dt, bool moving) {
 }
 
 void ParticleSystem::aim_one(std::size_t i, const Forces& forces, bool moving) {
-  const Aim a = leaves(fates_[i]) ? Aim{velocities_[i], particles_[i].position} : aim_at(i, forces, moving);
-  velocities_[i] = a.velocity;
+  const Aim a =
+      leaves(set_.fates()[i]) ? Aim{set_.velocities()[i], set_.states[i].position} : aim_at(i, forces, moving);
+  set_.velocities()[i] = a.velocity;
   targets_[i] = flushed(a.target);
 }
 
 // As aim_one() without a field, in a loop that needs no look at cells.
 void ParticleSystem::aim_in_flight(const Forces& forces, std::size_t begin, std::size_t end, bool moving) {
-  const std::span<const ParticleState> states = particles_.states();
+  const std::span<const ParticleState> states = set_.states.states();
   for (std::size_t i = begin; i < end; ++i) {
-    if (states[i].held || fates_[i] != ParticleStatus::alive) {
+    if (states[i].held || set_.fates()[i] != ParticleStatus::alive) {
       aim_one(i, forces, moving);
       continue;
     }
-    velocities_[i] = accelerated(velocities_[i], {}, {}, forces);
-    targets_[i] = flushed(states[i].position + velocities_[i] * forces.dt);
+    set_.velocities()[i] = accelerated(set_.velocities()[i], {}, {}, forces);
+    targets_[i] = flushed(states[i].position + set_.velocities()[i] * forces.dt);
   }
 }
 
@@ -84,8 +85,8 @@ void ParticleSystem::aim_in_flow(const detail::FlowScene& scene, std::size_t beg
                                  std::span<std::uint8_t> aimed) {
   const std::size_t size = end - begin;
   detail::aim_in_flow(scene,
-                      {particles_.states().subspan(begin, size), particles_.vertex_numbers().subspan(begin, size),
-                       std::span(fates_).subspan(begin, size), std::span(velocities_).subspan(begin, size),
+                      {set_.states.states().subspan(begin, size), set_.states.vertex_numbers().subspan(begin, size),
+                       std::span(set_.fates()).subspan(begin, size), std::span(set_.velocities()).subspan(begin, size),
                        std::span(targets_).subspan(begin, size), aimed.first(size / 4)});
 }
 
@@ -106,14 +107,14 @@ Acceleration ParticleSystem::acceleration(double dt) const {
 // A particle's velocity after the acceleration, and its target relative to positions before a move. A held particle
 // takes no step. A stuck particle goes exactly where its wall carries it, to the last bit, so that no contact follows.
 ParticleSystem::Aim ParticleSystem::aim_at(std::size_t i, const Forces& forces, bool moving) const {
-  const ParticleState& s = particles_[i];
-  if (s.held) return {velocities_[i], s.position};
-  const bool stuck = fates_[i] == ParticleStatus::stuck;
+  const ParticleState& s = set_.states[i];
+  if (s.held) return {velocities()[i], s.position};
+  const bool stuck = fates()[i] == ParticleStatus::stuck;
   if (!stuck && !field_ && !force_) {
-    const Vec3 v = accelerated(velocities_[i], {}, {}, forces);
+    const Vec3 v = accelerated(velocities()[i], {}, {}, forces);
     return {v, s.position + v * forces.dt};
   }
-  if (stuck && !moving) return {velocities_[i], s.position};
+  if (stuck && !moving) return {velocities()[i], s.position};
   const CellComplex& complex = environment_.complex();
   const Corners now = complex.corners(s.at());
   const Corners before = deforms() ? complex.previous_corners(s.at()) : now;
@@ -127,10 +128,10 @@ ParticleSystem::Aim ParticleSystem::aim_at(std::size_t i, const Forces& forces, 
   const Vec3 force = force_ ? force_->at(complex, s.at(), w, now) : Vec3{};
   const Vec3 flow = field_ ? field_->at(complex, s.at(), w, now) : Vec3{};
   if (!field_ || field_->frame() == FieldFrame::space) {
-    const Vec3 v = accelerated(velocities_[i], flow, force, forces);
+    const Vec3 v = accelerated(velocities()[i], flow, force, forces);
     return {v, s.position + v * forces.dt};
   }
-  const Vec3 v = accelerated(velocities_[i], flow + mesh, force, forces);
+  const Vec3 v = accelerated(velocities()[i], flow + mesh, force, forces);
   return {v, (moving ? carried : s.position) + (v - mesh) * forces.dt};
 }
 

@@ -10,17 +10,17 @@ namespace dartcast {
 void ParticleSystem::save(SimulationState& state) const {
   ParticleSystemState& saved = state.particles;
   saved.steps = steps_;
-  saved.next_id = next_id_;
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    saved.particles.push_back({ids_[i], whole_state(i), particles_.held_weights(i), velocities_[i], fates_[i],
-                               contact_counts_[i], radii_[i]});
+  saved.next_id = set_.next_id;
+  saved.table = SavedParticles(set_.table);
+  for (std::size_t i = 0; i < set_.states.size(); ++i) {
+    saved.table[saved.table.state][i] = whole_state(i);
+    saved.table[saved.table.held_weights][i] = set_.states.held_weights(i);
   }
   saved.totals = totals_;
   saved.gone = gone_;
   const auto cached_impulses =
       meets_bodies() ? body_collider_.solver().cached_impulses() : collider_.solver().cached_impulses();
   saved.impulses.assign(cached_impulses.begin(), cached_impulses.end());
-  saved.user_data = user_data_;
 }
 
 void ParticleSystem::restore(const SimulationState& state) {
@@ -28,18 +28,16 @@ void ParticleSystem::restore(const SimulationState& state) {
   if (saved.totals.contacts_by_patch.size() != totals_.contacts_by_patch.size())
     throw InvalidArgument(
         "simulation: the checkpoint is of an environment with other patches: use the mesh that it was saved with");
-  if (saved.user_data.size() != saved.particles.size() * width())
+  if (saved.table[saved.table.user_data].size() != saved.table.rows() * width())
     throw InvalidArgument("simulation: the checkpoint has other user data: give the options that it was saved with");
   if (steps_ != saved.steps) stand_at(saved.steps);
   const std::vector<VertexPlaces>& places = state.solids.places;
   if (!places.empty() && places.back().steps == saved.steps) put_back(places.back());
-  put_in_place_of_all(saved);
-  clear_.clear();
-  count_spheres();
+  put_in_place_of_all(saved.table);
   body_collider_.solver().set_cached_impulses(saved.impulses);  // the one that continues drops the other's
   collider_.solver().set_cached_impulses(saved.impulses);
   steps_ = saved.steps;
-  next_id_ = saved.next_id;
+  set_.next_id = saved.next_id;
   totals_ = {};
   totals_.start = saved.totals.start;
   totals_.injected = saved.totals.injected;
@@ -50,48 +48,34 @@ void ParticleSystem::restore(const SimulationState& state) {
   gone_ = saved.gone;
 }
 
-bool ParticleSystem::is_mine(const ParticleSystemState::Particle& p) const {
-  if (part_ == nullptr) return share_.holds(p.id);
-  const Cell here = part_->cells().here(p.state.cell);
+bool ParticleSystem::is_mine(std::uint64_t id, const ParticleState& state) const {
+  if (part_ == nullptr) return share_.holds(id);
+  const Cell here = part_->cells().here(state.cell);
   return here.valid() && part_->cells().is_own(here);
 }
 
 // Those that this rank holds.
-void ParticleSystem::put_in_place_of_all(const ParticleSystemState& saved) {
-  std::vector<std::size_t> own;
-  for (std::size_t i = 0; i < saved.particles.size(); ++i) {
-    if (is_mine(saved.particles[i])) own.push_back(i);
-  }
+void ParticleSystem::put_in_place_of_all(const SavedParticles& saved) {
+  ParticleTable table = set_.table;
+  table.truncate(0);
   std::vector<ParticleState> states;
   std::vector<Weights> weights;
-  for (const std::size_t i : own) {
-    const ParticleState& state = saved.particles[i].state;
+  for (std::size_t i = 0; i < saved.rows(); ++i) {
+    const ParticleState& state = saved[saved.state][i];
+    if (!is_mine(saved[saved.id][i], state)) continue;
     states.push_back(part_ == nullptr ? state : state_here(part_->cells(), state));
-    weights.push_back(saved.particles[i].held_weights);
+    weights.push_back(saved[saved.held_weights][i]);
+    table.append(saved, i);
+    table[table.held].back() = state.held ? 1 : 0;
   }
-  particles_ = environment_.restored(states, weights);
-  ids_.clear();
-  velocities_.clear();
-  fates_.clear();
-  contact_counts_.clear();
-  radii_.clear();
-  held_.clear();
-  user_data_.clear();
-  for (const std::size_t i : own) {
-    const ParticleSystemState::Particle& p = saved.particles[i];
-    ids_.push_back(p.id);
-    velocities_.push_back(p.velocity);
-    fates_.push_back(p.fate);
-    contact_counts_.push_back(p.contacts);
-    radii_.push_back(p.radius);
-    held_.push_back(p.state.held ? 1 : 0);
-    const auto data = saved.user_data.begin() + static_cast<std::ptrdiff_t>(i * width());
-    user_data_.insert(user_data_.end(), data, data + static_cast<std::ptrdiff_t>(width()));
-  }
+  set_.states = environment_.restored(states, weights);
+  set_.table = std::move(table);
+  set_.count_spheres();
+  clear_.clear();
 }
 
 void ParticleSystem::go_to(std::uint64_t steps) {
-  if (particles_.size() > 0)
+  if (set_.states.size() > 0)
     throw InvalidArgument(
         "simulation: its particles cannot follow to another step: use a simulation without particles");
   // Edits of one step follow each other where the vertices stand. Those that the first of them made are in no known place.
@@ -128,13 +112,13 @@ void ParticleSystem::stand_at(std::uint64_t steps) {
 }
 
 Audit ParticleSystem::audit() const {
-  return dartcast::audit(environment_.complex(), particles_, environment_.threads());
+  return dartcast::audit(environment_.complex(), set_.states, environment_.threads());
 }
 
 StateHash ParticleSystem::state_hash() const {
   StateHash hash = gone_;
-  for (std::size_t i = 0; i < ids_.size(); ++i) {
-    hash.add(ids_[i], whole_state(i), velocities_[i], static_cast<std::uint64_t>(fates_[i]));
+  for (std::size_t i = 0; i < ids().size(); ++i) {
+    hash.add(ids()[i], whole_state(i), velocities()[i], static_cast<std::uint64_t>(fates()[i]));
   }
   return hash;
 }

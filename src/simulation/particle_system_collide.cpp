@@ -35,23 +35,23 @@ std::optional<WallSurface> solved_surface(const WallResponse& response) {
 
 // Masses, and which spheres take part. Held spheres and those that left have no contacts; stuck ones cannot be pushed.
 void ParticleSystem::weigh() {
-  met_radii_.resize(radii_.size());
-  inverse_masses_.resize(radii_.size());
-  displacements_.resize(radii_.size());
-  for (std::size_t i = 0; i < radii_.size(); ++i) {
-    const double r = radii_[i];
+  met_radii_.resize(radii().size());
+  inverse_masses_.resize(radii().size());
+  displacements_.resize(radii().size());
+  for (std::size_t i = 0; i < radii().size(); ++i) {
+    const double r = radii()[i];
     const bool meets =
-        !particles_[i].held && (fates_[i] == ParticleStatus::alive || fates_[i] == ParticleStatus::stuck);
+        !set_.states[i].held && (set_.fates()[i] == ParticleStatus::alive || set_.fates()[i] == ParticleStatus::stuck);
     met_radii_[i] = meets ? r : 0.0;
     const double m = mass(i);
-    inverse_masses_[i] = fates_[i] == ParticleStatus::alive && m > 0.0 ? 1.0 / m : 0.0;
+    inverse_masses_[i] = set_.fates()[i] == ParticleStatus::alive && m > 0.0 ? 1.0 / m : 0.0;
   }
 }
 
 // The distance that is still free of walls around a sphere, from where it was last measured. Distances were rounded, so
 // the result is a little smaller.
 double ParticleSystem::clearance(std::size_t i) const {
-  const double room = clear_[i].distance * (1.0 - 0x1p-20) - norm(particles_[i].position - clear_[i].centre);
+  const double room = clear_[i].distance * (1.0 - 0x1p-20) - norm(set_.states[i].position - clear_[i].centre);
   return std::max(0.0, room);
 }
 
@@ -63,15 +63,15 @@ void ParticleSystem::walls_of(std::size_t i, double dt, bool moving, NearWalls& 
   // walls within the share that counts are the same.
   const bool next_to_wall = deforms() || (clear_[i].distance > 0.0 && clear_[i].distance < 1.5 * r);
   const double reach = next_to_wall ? wall_share * r : r;
-  const auto walls = walls_within(environment_.complex(), particles_[i], r + reach, near, moving);
-  clear_[i] = {particles_[i].position, walls.empty() ? r + reach : walls.front().distance};
+  const auto walls = walls_within(environment_.complex(), set_.states[i], r + reach, near, moving);
+  clear_[i] = {set_.states[i].position, walls.empty() ? r + reach : walls.front().distance};
   clearances_[i] = clearance(i);
   for (const WallFeature& w : walls) {
     const std::optional<WallSurface> surface = solved_surface(responses_.of(w.patch));
     if (!surface) continue;
     const Vec3 velocity = moving ? w.displacement * (1.0 / dt) : Vec3{};
     const double gap = w.distance - r;
-    const bool meets = gap <= wall_share * r && dot(velocities_[i] - velocity, w.normal) * dt <= -gap;
+    const bool meets = gap <= wall_share * r && dot(set_.velocities()[i] - velocity, w.normal) * dt <= -gap;
     if (gap > near_share * r && !meets) continue;
     found.push_back({static_cast<std::uint32_t>(i), w.normal, gap, velocity, surface->restitution, surface->friction,
                      w.face, w.triangle});
@@ -79,13 +79,13 @@ void ParticleSystem::walls_of(std::size_t i, double dt, bool moving, NearWalls& 
 }
 
 void ParticleSystem::find_walls(double dt, bool moving) {
-  const std::size_t chunks = chunk_count(radii_.size(), wall_grain);
+  const std::size_t chunks = chunk_count(radii().size(), wall_grain);
   if (near_.size() < chunks) near_.resize(chunks);
   near_contacts_.resize(chunks);
-  clearances_.assign(radii_.size(), 0.0);
-  clear_.resize(radii_.size());
-  if (deforms()) clear_.assign(radii_.size(), {});
-  parallel_for(radii_.size(), wall_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
+  clearances_.assign(radii().size(), 0.0);
+  clear_.resize(radii().size());
+  if (deforms()) clear_.assign(radii().size(), {});
+  parallel_for(radii().size(), wall_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
     const std::size_t chunk = begin / wall_grain;
     near_contacts_[chunk].clear();
     for (std::size_t i = begin; i < end; ++i) {
@@ -99,8 +99,8 @@ void ParticleSystem::find_walls(double dt, bool moving) {
 // Targets of stuck particles are known only once their walls have moved.
 void ParticleSystem::aim_stuck(double dt) {
   const Forces forces = forces_of(dt);
-  for (std::size_t i = 0; i < fates_.size(); ++i) {
-    if (fates_[i] == ParticleStatus::stuck) targets_[i] = flushed(aim_at(i, forces, true).target);
+  for (std::size_t i = 0; i < set_.fates().size(); ++i) {
+    if (set_.fates()[i] == ParticleStatus::stuck) targets_[i] = flushed(aim_at(i, forces, true).target);
   }
 }
 
@@ -109,7 +109,7 @@ void ParticleSystem::aim_stuck(double dt) {
 void ParticleSystem::note_contacts(std::span<const WallContact> walls, double dt) {
   solved_.clear();
   for (const WallContact& w : walls) {
-    const Vec3& x = particles_[w.sphere].position;
+    const Vec3& x = set_.states[w.sphere].position;
     Contact c;
     c.particle = w.sphere;
     c.wall_displacement = w.wall_velocity * dt;
@@ -153,8 +153,8 @@ void ParticleSystem::add_solved_contacts(StepReport& report) {
 void ParticleSystem::take_targets() {
   pushed_.assign(targets_.size(), 0);
   for (std::size_t i = 0; i < targets_.size(); ++i) {
-    if (fates_[i] != ParticleStatus::alive || particles_[i].held) continue;
-    const Vec3 target = flushed(particles_[i].position + displacements_[i]);
+    if (set_.fates()[i] != ParticleStatus::alive || set_.states[i].held) continue;
+    const Vec3 target = flushed(set_.states[i].position + displacements_[i]);
     pushed_[i] = target != targets_[i] ? 1 : 0;
     targets_[i] = target;
   }
@@ -174,8 +174,8 @@ void ParticleSystem::collide(double dt, bool moving) {
   solver.resting_speed = 2.0 * norm(options_.gravity) * dt;
   solver.acceleration = acceleration(dt).value;
   const CellComplex& complex = environment_.complex();
-  const CollidingSpheres spheres = {particles_.states(), ids_,        met_radii_,     inverse_masses_,
-                                    clearances_,         velocities_, displacements_, options_.gravity};
+  const CollidingSpheres spheres = {set_.states.states(), ids(),          met_radii_,      inverse_masses_, clearances_,
+                                    set_.velocities(),    displacements_, options_.gravity};
   if (meets_bodies()) {
     last_.collisions += body_collider_.collide(complex, spheres, walls_, *bodies_, solver, environment_.threads());
     collider_.solver().set_cached_impulses({});

@@ -7,9 +7,9 @@
 namespace dartcast {
 
 void ParticleSystem::update_after_edit(const ComplexEditReport& edit, OrphanPolicy orphaned) {
-  const std::vector<ParticleState> before(particles_.states().begin(), particles_.states().end());
+  const std::vector<ParticleState> before(set_.states.states().begin(), set_.states.states().end());
   clear_.clear();
-  last_update_ = environment_.update_after_edit(particles_, orphaned);
+  last_update_ = environment_.update_after_edit(set_.states, orphaned);
   remove_absorbed(last_update_, before);
   if (deformation_) deformation_->update_after_edit(edit, environment_.positions().size());
   if (field_) field_->update_after_edit(edit, environment_.complex());
@@ -18,21 +18,21 @@ void ParticleSystem::update_after_edit(const ComplexEditReport& edit, OrphanPoli
 }
 
 void ParticleSystem::remove_absorbed(const UpdateReport& report, std::span<const ParticleState> before) {
-  std::vector<std::uint8_t> marks(ids_.size(), 0);
+  std::vector<std::uint8_t> marks(ids().size(), 0);
   std::uint64_t absorbed = 0;
   absorbed_by_edit_.clear();
   for (const OrphanedParticle& p : report.orphaned) {
     if (p.outcome != OrphanPolicy::absorb) continue;
     marks[p.particle] = 1;
     ++absorbed;
-    absorbed_by_edit_.push_back(ids_[p.particle]);
-    gone_.add(ids_[p.particle], before[p.particle], velocities_[p.particle],
+    absorbed_by_edit_.push_back(ids()[p.particle]);
+    gone_.add(ids()[p.particle], before[p.particle], set_.velocities()[p.particle],
               static_cast<std::uint64_t>(ParticleStatus::absorbed));
   }
   if (absorbed == 0) return;
   totals_.absorbed += absorbed;
   absorbed_between_ += absorbed;
-  remove_marked(marks);
+  set_.remove_rows(marks);
 }
 
 void ParticleSystem::pull(std::span<const Vec3> displacement, double duration) {

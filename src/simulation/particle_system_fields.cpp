@@ -34,15 +34,15 @@ void ParticleSystem::set_fields_to(double begin, double duration) {
 }
 
 void ParticleSystem::aim_by_runge_kutta(double dt, bool moving) {
-  targets_.resize(particles_.size());
+  targets_.resize(set_.states.size());
   const Forces forces = forces_of(dt);
   const RungeKuttaStep step = {environment_.complex(), *field_, dt, moving};
-  parallel_for(particles_.size(), tracer_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
+  parallel_for(set_.states.size(), tracer_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const ParticleState& s = particles_[i];
-      const bool follows = fates_[i] == ParticleStatus::alive && !s.held;
+      const ParticleState& s = set_.states[i];
+      const bool follows = set_.fates()[i] == ParticleStatus::alive && !s.held;
       const Aim a = follows ? Aim{runge_kutta_velocity(step, s), {}} : aim_at(i, forces, moving);
-      velocities_[i] = a.velocity;
+      set_.velocities()[i] = a.velocity;
       targets_[i] = flushed(follows ? s.position + a.velocity * dt : a.target);
     }
   });

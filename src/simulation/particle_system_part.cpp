@@ -2,50 +2,36 @@
 //
 // A step: particles that end in another rank's cell, or cross one on their way to a wall, go there with all their data.
 // At the end of the step their former entries are removed, and the others are put in the order of ids.
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <type_traits>
 #include <utility>
 
 #include "base/bytes.hpp"
-#include "base/put_in_order.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
+#include "environment/table_travel.hpp"
 #include "simulation/particle_system.hpp"
 #include "tracking/batch/traveller.hpp"
 
 namespace dartcast {
 
-// The arrays beside the particles, one entry at a time.
-class ParticleSystem::PartData final : public TravelData {
+namespace {
+
+class PartTravel final : public TableTravel {
  public:
-  explicit PartData(ParticleSystem& system) : s_(system) {}
+  explicit PartTravel(ParticleTable& table) : TableTravel(table), table_(table) {}
 
+  // The row that stays here is removed after the step.
   [[nodiscard]] std::string leave(std::uint32_t i, std::uint32_t contacts) const override {
-    ByteWriter out;
-    out.put(s_.ids_[i]);
-    out.put(s_.velocities_[i]);
-    out.put(s_.fates_[i]);
-    out.put(contacts + std::min(s_.contact_counts_[i], UINT32_MAX - contacts));
-    for (const double value : std::as_const(s_).user_data(i)) out.put(value);
-    return out.bytes();
-  }
-
-  void come(std::string_view data) override {
-    ByteReader in(data);
-    s_.ids_.push_back(in.take<std::uint64_t>());
-    s_.velocities_.push_back(in.take<Vec3>());
-    s_.fates_.push_back(in.take<ParticleStatus>());
-    s_.contact_counts_.push_back(in.take<std::uint32_t>());
-    s_.radii_.push_back(0.0);
-    s_.held_.push_back(0);
-    for (std::size_t k = 0; k < s_.width(); ++k) s_.user_data_.push_back(in.take<double>());
+    std::uint32_t& count = table_[table_.contact_count][i];
+    count += std::min(contacts, UINT32_MAX - count);
+    return TableTravel::leave(i, contacts);
   }
 
  private:
-  ParticleSystem& s_;
+  ParticleTable& table_;
 };
+
+}  // namespace
 
 void ParticleSystem::set_part(PartEnvironment& part) {
   part_ = &part;
@@ -53,25 +39,13 @@ void ParticleSystem::set_part(PartEnvironment& part) {
 }
 
 std::vector<std::string> ParticleSystem::packed_for(const std::function<std::uint32_t(Cell)>& owner) const {
-  static_assert(std::is_trivially_copyable_v<ParticleSystemState::Particle>);
   SimulationState all;
   save(all);
-  const std::vector<ParticleSystemState::Particle>& particles = all.particles.particles;
-  std::vector<std::vector<ParticleSystemState::Particle>> lists(options_.ranks->size());
-  std::vector<std::vector<double>> data(lists.size());
-  for (std::size_t i = 0; i < particles.size(); ++i) {
-    const std::uint32_t to = owner(particles_[i].cell);
-    lists[to].push_back(particles[i]);
-    const std::span<const double> own = user_data(i);
-    data[to].insert(data[to].end(), own.begin(), own.end());
-  }
+  const SavedParticles& saved = all.particles.table;
+  std::vector<ByteWriter> to(options_.ranks->size());
+  for (std::size_t i = 0; i < saved.rows(); ++i) saved.pack(i, to[owner(set_.states[i].cell)]);
   std::vector<std::string> packed;
-  for (std::size_t r = 0; r < lists.size(); ++r) {
-    ByteWriter out;
-    out.put(lists[r]);
-    out.put(data[r]);
-    packed.push_back(out.bytes());
-  }
+  for (const ByteWriter& out : to) packed.push_back(out.bytes());
   return packed;
 }
 
@@ -83,16 +57,13 @@ void ParticleSystem::take_over(const std::vector<std::string>& packed) {
                       i.radius, std::move(i.user_data)});
   inlets_ = std::move(inlets);
   stand_at(steps_);
-  ParticleSystemState all;
+  SavedParticles all(set_.table);
+  all.truncate(0);
   for (const std::string& bytes : packed) {
-    ByteReader in(bytes);
-    const auto particles = in.take_list<ParticleSystemState::Particle>();
-    const auto data = in.take_list<double>();
-    all.particles.insert(all.particles.end(), particles.begin(), particles.end());
-    all.user_data.insert(all.user_data.end(), data.begin(), data.end());
+    for (ByteReader in(bytes); !in.at_end();) all.append(in);
   }
   put_in_place_of_all(all);
-  put_in_order_of_ids();
+  set_.put_in_order_of_ids();
 }
 
 std::optional<SampledPart> ParticleSystem::sampled_part() const {
@@ -101,17 +72,17 @@ std::optional<SampledPart> ParticleSystem::sampled_part() const {
 }
 
 ParticleState ParticleSystem::whole_state(std::size_t i) const {
-  return part_ == nullptr ? particles_[i] : dartcast::whole_state(part_->cells(), particles_[i]);
+  return part_ == nullptr ? set_.states[i] : dartcast::whole_state(part_->cells(), set_.states[i]);
 }
 
 // The arrays that responses change may move while particles come.
 StepReport ParticleSystem::advance_in_part(const Acceleration& acceleration) {
   const ContactCallback respond = [&](const Contact& c, std::span<const WallHit> walls,
                                       std::span<const WallHit> earlier) {
-    return respond_with(responses_, velocities_, fates_, options_.dt, acceleration)(c, walls, earlier);
+    return respond_with(responses_, set_.velocities(), set_.fates(), options_.dt, acceleration)(c, walls, earlier);
   };
-  PartData data(*this);
-  return part_->advance(particles_, targets_, respond, options_.step, data, departed_);
+  PartTravel data(set_.table);
+  return part_->advance(set_.states, targets_, respond, options_.step, data, departed_);
 }
 
 // All ranks draw for each particle. The one whose cell it is adds it; where rounding has put the point outside, all draw
@@ -137,7 +108,7 @@ std::vector<std::uint64_t> ParticleSystem::place_in_part(const Sampler& sampler,
     for (Waiting& w : waiting) {
       const std::optional<Sample> s = sampler.sample(environment_.complex(), w.random);
       if (!s) continue;
-      (environment_.add(particles_, s->simplex, flushed(s->position)) ? placed : failed).push_back(w.id);
+      (environment_.add(set_.states, s->simplex, flushed(s->position)) ? placed : failed).push_back(w.id);
     }
     const std::vector<std::uint64_t> again = of_all_ranks(failed);
     std::erase_if(waiting, [&](const Waiting& w) { return !std::binary_search(again.begin(), again.end(), w.id); });
@@ -158,19 +129,6 @@ std::vector<std::uint64_t> ParticleSystem::of_all_ranks(const std::vector<std::u
   }
   std::sort(all.begin(), all.end());
   return all;
-}
-
-void ParticleSystem::put_in_order_of_ids() {
-  const std::vector<std::uint32_t> order = order_of(ids_);
-  if (order.empty()) return;
-  particles_.reorder(order);
-  put_in_order(ids_, order);
-  put_in_order(velocities_, order);
-  put_in_order(fates_, order);
-  put_in_order(contact_counts_, order);
-  put_in_order(radii_, order);
-  put_in_order(held_, order);
-  put_in_order(user_data_, order, width());
 }
 
 }  // namespace dartcast

@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/put_in_order.hpp"
 #include "base/reduced.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/simulation.hpp"
@@ -54,26 +54,6 @@ void unpack(const std::string& bytes, SimulationTotals& t) {
   t.wall_overlaps = in.take<std::uint64_t>();
   t.deepest_in_wall = in.take<double>();
   t.contacts_by_patch = in.take_list<std::uint64_t>();
-}
-
-// By id, as one process has them.
-void put_in_order(ParticleSystemState& s) {
-  const std::size_t count = s.particles.size();
-  const std::size_t width = count > 0 ? s.user_data.size() / count : 0;
-  std::vector<std::size_t> order(count);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return s.particles[a].id < s.particles[b].id; });
-  std::vector<ParticleSystemState::Particle> particles;
-  std::vector<double> user_data;
-  particles.reserve(count);
-  user_data.reserve(s.user_data.size());
-  for (const std::size_t i : order) {
-    particles.push_back(s.particles[i]);
-    for (std::size_t k = 0; k < width; ++k) user_data.push_back(s.user_data[i * width + k]);
-  }
-  s.particles = std::move(particles);
-  s.user_data = std::move(user_data);
 }
 
 }  // namespace
@@ -124,12 +104,16 @@ SimulationCheckpoint joined(std::span<const SimulationCheckpoint> parts) {
           fmt::format("joined: one checkpoint is of step {}, another of step {}: join those that the "
                       "ranks have saved after the same step",
                       all.particles.steps, p.steps));
-    all.particles.particles.insert(all.particles.particles.end(), p.particles.begin(), p.particles.end());
-    all.particles.user_data.insert(all.particles.user_data.end(), p.user_data.begin(), p.user_data.end());
+    if (all.particles.table.rows() == 0)
+      all.particles.table = p.table;  // without rows a file does not say how much user data they would have
+    else
+      all.particles.table.append(p.table);
     all.particles.gone += p.gone;
     add_sums(all.particles.totals, p.totals);
   }
-  put_in_order(all.particles);
+  SavedParticles& table = all.particles.table;
+  const std::vector<std::uint32_t> order = order_of(table[table.id]);  // as one process has them
+  if (!order.empty()) table.reorder(order);
   return SimulationCheckpoint(std::move(all));
 }
 

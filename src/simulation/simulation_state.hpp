@@ -11,28 +11,19 @@
 #include "dartcast/solids.hpp"
 #include "dartcast/statistics.hpp"
 #include "dynamics/contact_solver.hpp"
+#include "simulation/particle_table.hpp"
 #include "simulation/rigid_pose.hpp"
 #include "simulation/start_times.hpp"
 
 namespace dartcast {
 
 struct ParticleSystemState {
-  struct Particle {
-    std::uint64_t id = 0;
-    ParticleState state;
-    Weights held_weights{};
-    Vec3 velocity;
-    ParticleStatus fate = ParticleStatus::alive;
-    std::uint32_t contacts = 0;
-    double radius = 0.0;
-  };
   std::uint64_t steps = 0;
   std::uint64_t next_id = 0;
-  std::vector<Particle> particles;
+  SavedParticles table;
   SimulationTotals totals;
   StateHash gone;
   std::vector<CachedImpulse> impulses;  ///< that the next step's collisions start from
-  std::vector<double> user_data;        ///< particle by particle
 };
 
 struct CathetersState {

@@ -55,7 +55,7 @@ TEST(Simulation, RestoresOnlyStatesThatHold) {
   const std::string hash = flow.state_hash().hex();
   const auto expect_refused = [&](auto&& spoil) {
     SimulationState bad = good.state();
-    spoil(bad.particles.particles[7].state);
+    spoil(bad.particles.table[bad.particles.table.state][7]);
     EXPECT_THROW(flow.restore(SimulationCheckpoint(bad)), InvalidArgument);
     EXPECT_EQ(flow.state_hash().hex(), hash);
   };
