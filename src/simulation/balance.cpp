@@ -89,16 +89,16 @@ std::vector<std::uint32_t> divided(const MeshPart& part, const std::vector<std::
 
 }  // namespace
 
-void furnish(ParticleSystem& particles, const Scene& scene, const MeshData& mesh,
+void furnish(Simulation::Parts& parts, const Scene& scene, const MeshData& mesh,
              std::span<const std::uint32_t> points) {
-  const CellComplex& complex = particles.environment().complex();
+  const CellComplex& complex = parts.environment.complex();
   if (const auto field = scene_field(scene.motion.field, "the velocity field", mesh, complex))
-    particles.set_field(*field);
-  if (const auto force = scene_field(scene.motion.force, "the force", mesh, complex)) particles.set_force(*force);
+    parts.particles.set_field(*field);
+  if (const auto force = scene_field(scene.motion.force, "the force", mesh, complex)) parts.particles.set_force(*force);
   if (scene.deformation.empty()) return;
   std::vector<DeformationStep> steps = deformation_steps(scene.deformation, mesh);
   if (!points.empty()) steps = steps_of_part(std::move(steps), points);
-  particles.set_deformation(Deformation(std::move(steps), mesh.points));
+  parts.motion.set_deformation(Deformation(std::move(steps), mesh.points));
 }
 
 void balance(Simulation::Parts& parts) {
@@ -115,7 +115,8 @@ void balance(Simulation::Parts& parts) {
   MeshPart moved = moved_part(part, next, ranks);
   parts.part->change(moved);
   *parts.part_mesh = std::move(moved);
-  furnish(parts.particles, *parts.spread_scene, parts.part_mesh->mesh, parts.part_mesh->points);
+  furnish(parts, *parts.spread_scene, parts.part_mesh->mesh, parts.part_mesh->points);
+  parts.motion.stand_at(parts.motion.steps());
   parts.particles.take_over(ranks.exchange(leaving));
   ++parts.balanced;
 }

@@ -98,8 +98,9 @@ void check(const SimulationOptions& o) {
 
 }  // namespace
 
-ParticleSystem::ParticleSystem(Environment& environment, const SimulationOptions& options)
+ParticleSystem::ParticleSystem(Environment& environment, MovingVertices& motion, const SimulationOptions& options)
     : environment_(environment),
+      motion_(motion),
       options_(options),
       share_(options.ranks),
       responses_(responses_of(options, environment.map())),
@@ -109,26 +110,6 @@ ParticleSystem::ParticleSystem(Environment& environment, const SimulationOptions
     throw InvalidArgument(fmt::format("simulation: gravity is ({}, {}, {}): in the plane its z must be 0",
                                       options.gravity.x, options.gravity.y, options.gravity.z));
   totals_.contacts_by_patch.resize(environment.map().patch_names().size());
-}
-
-void ParticleSystem::set_deformation(Deformation deformation) {
-  if (deformation.size() != environment_.positions().size()) {
-    throw InvalidArgument(
-        "simulation: the deformation has another number of points than the environment: make it for this mesh");
-  }
-  if (environment_.map().dimension() == 2) deformation.check_plane();
-  deformation_ = std::move(deformation);
-}
-
-void ParticleSystem::move_vertices_to(std::uint64_t steps) {
-  if (!deformation_ || steps == 0) return;
-  deformation_->positions(static_cast<double>(steps) * options_.dt, environment_.next_positions(),
-                          environment_.threads());
-  environment_.move();
-}
-
-void ParticleSystem::load_motion(std::uint64_t steps) const {
-  if (deformation_) deformation_->load_frames(static_cast<double>(steps) * options_.dt);
 }
 
 // Phases, in order:
@@ -150,24 +131,18 @@ void ParticleSystem::step(double /*begin*/) {
   count_contacts();
   mark_held();
   remove_gone();
-  ++steps_;
+  motion_.count_step();
 }
 
 void ParticleSystem::move_vertices() {
-  if (!deformation_) return;
+  if (!motion_.deforms()) return;
   const ScopeTimer timer(totals_.seconds_deform);
-  if (!mover_) {
-    move_vertices_to(steps_ + 1);
-    return;
-  }
-  next_vertices_.resize(environment_.positions().size());
-  deformation_->positions(static_cast<double>(steps_ + 1) * options_.dt, next_vertices_, environment_.threads());
-  mover_(next_vertices_);
+  motion_.move();
 }
 
 void ParticleSystem::advance_segment(unsigned segment) {
   const double dt = options_.dt / options_.substeps;
-  const bool moving = deformation_ && segment == 0;
+  const bool moving = motion_.deforms() && segment == 0;
   set_fields_to(time() + segment * dt, dt);
   if (collides()) {
     {

@@ -15,6 +15,7 @@
 #include "environment/part_environment.hpp"
 #include "simulation/component.hpp"
 #include "simulation/flow_aim.hpp"
+#include "simulation/moving_vertices.hpp"
 #include "simulation/particle_set.hpp"
 #include "simulation/particle_share.hpp"
 #include "simulation/seeding.hpp"
@@ -34,19 +35,16 @@ inline bool leaves(ParticleStatus status) {
   return false;
 }
 
-/// It also moves the vertices: with collisions that comes between the spheres' impulses and their walk. A function
-/// with the name of one of Simulation's does the work of that function.
+/// Its step also moves the vertices: with collisions between the spheres' impulses and their walk. A function with the name
+/// of one of Simulation's does the work of that function.
 class ParticleSystem final : public SimulationComponent {
  public:
-  ParticleSystem(Environment& environment, const SimulationOptions& options);
+  ParticleSystem(Environment& environment, MovingVertices& motion, const SimulationOptions& options);
 
   void set_field(VelocityField field) { field_ = std::move(field); }
   void set_force(VectorField force) { force_ = std::move(force); }
-  void set_deformation(Deformation deformation);
-  /// Reads what moving the vertices to their places after so many steps needs. Throws as Deformation::load_frames().
-  void load_motion(std::uint64_t steps) const;
-  /// Reads what the next step needs of the motion's and the fields' files, before that step changes anything. Throws as
-  /// load_motion() and VectorField::hold(), and InvalidArgument where an integrator has no field to follow.
+  /// Reads what the next step needs of the fields' files, before that step changes anything. Throws as
+  /// VectorField::hold(), and InvalidArgument where an integrator has no field to follow.
   void load_step();
   /// Called in each step when the inlets have injected, before anything moves; empty: nothing is.
   void set_after_injection(std::function<void()> call) { after_injection_ = std::move(call); }
@@ -56,8 +54,8 @@ class ParticleSystem final : public SimulationComponent {
   void set_part(PartEnvironment& part);
   /// The particles as bytes, for each rank those in the cells that owner(cell) gives it.
   [[nodiscard]] std::vector<std::string> packed_for(const std::function<std::uint32_t(Cell)>& owner) const;
-  /// Puts these in place of all particles: those that all ranks have packed for this one, whose environment is at rest and of
-  /// another part. The vertices move to where they were.
+  /// Puts these in place of all particles: those that all ranks have packed for this one, whose environment is of
+  /// another part, and stands where that one stood.
   void take_over(const std::vector<std::string>& packed);
   void add_inlet(Patch patch, double rate, const Vec3& velocity, double radius, std::span<const double> user_data);
   std::vector<AddResult> add(std::span<const Vec3> positions, const Vec3& velocity, double radius,
@@ -65,17 +63,6 @@ class ParticleSystem final : public SimulationComponent {
   std::vector<AddResult> add(std::span<const Vec3> positions, std::span<const Vec3> velocities,
                              std::span<const double> radii, std::span<const double> user_data);
   void add_random(std::size_t count, const Vec3& velocity, double radius, std::span<const double> user_data);
-  void pull(std::span<const Vec3> displacement, double duration);
-  void go_to(std::uint64_t steps);
-  /// Moves the environment in a step to the positions that the deformation gives, or as far as something lets it.
-  using Mover = std::function<void(std::span<const Vec3>)>;
-  void set_mover(Mover mover) { mover_ = std::move(mover); }
-  /// Where the vertices stood after some steps, if not where the deformation puts them. go_to() looks there.
-  void set_known_places(std::vector<VertexPlaces> places) { known_places_ = std::move(places); }
-  /// For put_back(). Cost: a copy of all positions, twice.
-  [[nodiscard]] VertexPlaces vertex_places() const;
-  /// Moves the vertices back, and counts steps from there. The caller restores all particles.
-  void put_back(const VertexPlaces& places);
 
   void step(double begin) override;
   void update_after_edit(const ComplexEditReport& edit, OrphanPolicy orphaned) override;
@@ -97,9 +84,7 @@ class ParticleSystem final : public SimulationComponent {
   [[nodiscard]] std::span<const std::uint64_t> absorbed_by_edit() const {
     return absorbed_by_edit_;
   }  ///< ids, last edit
-  [[nodiscard]] double time() const { return static_cast<double>(steps_) * options_.dt; }
-  [[nodiscard]] std::uint64_t steps() const { return steps_; }
-  [[nodiscard]] bool deforms() const { return deformation_.has_value(); }
+  [[nodiscard]] double time() const { return motion_.time(); }
   [[nodiscard]] const Particles& particles() const { return set_.states; }
   [[nodiscard]] const ParticleTable& table() const { return set_.table; }
   [[nodiscard]] std::span<const std::uint64_t> ids() const { return table()[set_.table.id]; }
@@ -138,7 +123,6 @@ class ParticleSystem final : public SimulationComponent {
 
   // In particle_system.cpp.
   void move_vertices();
-  void move_vertices_to(std::uint64_t steps);
   void advance_segment(unsigned segment);
   void count_contacts();
   void mark_held();
@@ -179,7 +163,6 @@ class ParticleSystem final : public SimulationComponent {
   // In particle_system_edit.cpp.
   void remove_absorbed(const UpdateReport& report, std::span<const ParticleState> before);
   // In particle_system_checkpoint.cpp.
-  void stand_at(std::uint64_t steps);
   [[nodiscard]] bool is_mine(std::uint64_t id, const ParticleState& state) const;
   void put_in_place_of_all(const SavedParticles& saved);
   // With collisions, in particle_system_collide.cpp.
@@ -198,16 +181,13 @@ class ParticleSystem final : public SimulationComponent {
   void aim_stuck(double dt);
 
   Environment& environment_;
+  MovingVertices& motion_;
   SimulationOptions options_;
   ParticleShare share_;
   PartEnvironment* part_ = nullptr;  // none: the environment is whole
   WallResponses responses_;
   std::optional<VelocityField> field_;
   std::optional<VectorField> force_;  // accelerations, on top of gravity
-  std::optional<Deformation> deformation_;
-  Mover mover_;  // none: Environment::move()
-  std::vector<VertexPlaces> known_places_;
-  std::vector<Vec3> next_vertices_;
   std::vector<Inlet> inlets_;
 
   ParticleSet set_;
@@ -230,9 +210,8 @@ class ParticleSystem final : public SimulationComponent {
   std::vector<NearWalls> near_;  // by chunk
   std::vector<std::vector<WallContact>> near_contacts_;
   std::vector<WallContact> walls_;
-  ContactList solved_;                // of this segment, with walls whose impulses the solver gave
-  std::vector<std::uint8_t> pushed_;  // by particle: whether the solver changed its way
-  std::uint64_t steps_ = 0;
+  ContactList solved_;                  // of this segment, with walls whose impulses the solver gave
+  std::vector<std::uint8_t> pushed_;    // by particle: whether the solver changed its way
   std::uint64_t absorbed_between_ = 0;  // by edits since the last step
   SimulationStep last_;
   UpdateReport last_update_;

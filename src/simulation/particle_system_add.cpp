@@ -181,9 +181,9 @@ void ParticleSystem::inject() {
     const auto up_to = [&](std::uint64_t steps) {
       return std::floor(inlet.rate * options_.dt * static_cast<double>(steps));
     };
-    const auto count = static_cast<std::uint64_t>(up_to(steps_ + 1) - up_to(steps_));
+    const auto count = static_cast<std::uint64_t>(up_to(motion_.steps() + 1) - up_to(motion_.steps()));
     if (count == 0 || inlet.sampler.empty()) continue;
-    if (deformation_) inlet.sampler.update(environment_.complex());
+    if (motion_.deforms()) inlet.sampler.update(environment_.complex());
     add_sampled(inlet.sampler, count, inlet.velocity, inlet.radius, inlet.user_data);
     last_.injected += count;
   }

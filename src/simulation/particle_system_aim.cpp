@@ -68,7 +68,7 @@ detail::FlowScene ParticleSystem::flow_scene(const Forces& forces, bool moving) 
   const CellComplex& complex = environment_.complex();
   detail::FlowScene scene;
   scene.now = complex.positions().data();
-  scene.before = deforms() ? complex.previous_positions().data() : scene.now;
+  scene.before = motion_.deforms() ? complex.previous_positions().data() : scene.now;
   scene.values = field_->values().data();
   scene.rest = field_->rest().empty() ? nullptr : field_->rest().data();
   scene.planar = complex.map().dimension() == 2;
@@ -117,7 +117,7 @@ ParticleSystem::Aim ParticleSystem::aim_at(std::size_t i, const Forces& forces, 
   if (stuck && !moving) return {velocities()[i], s.position};
   const CellComplex& complex = environment_.complex();
   const Corners now = complex.corners(s.at());
-  const Corners before = deforms() ? complex.previous_corners(s.at()) : now;
+  const Corners before = motion_.deforms() ? complex.previous_corners(s.at()) : now;
   const Weights w = detail::barycentric(moving ? before : now, s.position);
   const Vec3 carried = detail::combine(now, w);
   const Vec3 mesh = (carried - detail::combine(before, w)) * (1.0 / options_.dt);

@@ -9,7 +9,7 @@ namespace dartcast {
 
 void ParticleSystem::save(SimulationState& state) const {
   ParticleSystemState& saved = state.particles;
-  saved.steps = steps_;
+  saved.steps = motion_.steps();
   saved.next_id = set_.next_id;
   saved.table = SavedParticles(set_.table);
   for (std::size_t i = 0; i < set_.states.size(); ++i) {
@@ -30,13 +30,9 @@ void ParticleSystem::restore(const SimulationState& state) {
         "simulation: the checkpoint is of an environment with other patches: use the mesh that it was saved with");
   if (saved.table[saved.table.user_data].size() != saved.table.rows() * width())
     throw InvalidArgument("simulation: the checkpoint has other user data: give the options that it was saved with");
-  if (steps_ != saved.steps) stand_at(saved.steps);
-  const std::vector<VertexPlaces>& places = state.solids.places;
-  if (!places.empty() && places.back().steps == saved.steps) put_back(places.back());
   put_in_place_of_all(saved.table);
   body_collider_.solver().set_cached_impulses(saved.impulses);  // the one that continues drops the other's
   collider_.solver().set_cached_impulses(saved.impulses);
-  steps_ = saved.steps;
   set_.next_id = saved.next_id;
   totals_ = {};
   totals_.start = saved.totals.start;
@@ -72,43 +68,6 @@ void ParticleSystem::put_in_place_of_all(const SavedParticles& saved) {
   set_.table = std::move(table);
   set_.count_spheres();
   clear_.clear();
-}
-
-void ParticleSystem::go_to(std::uint64_t steps) {
-  if (set_.states.size() > 0)
-    throw InvalidArgument(
-        "simulation: its particles cannot follow to another step: use a simulation without particles");
-  // Edits of one step follow each other where the vertices stand. Those that the first of them made are in no known place.
-  if (steps_ == steps) return;
-  stand_at(steps);
-  // The first of this step: later ones have the vertices that later edits gave the numbers of others.
-  const auto known =
-      std::find_if(known_places_.begin(), known_places_.end(), [&](const VertexPlaces& p) { return p.steps == steps; });
-  if (known != known_places_.end()) put_back(*known);
-  steps_ = steps;
-}
-
-VertexPlaces ParticleSystem::vertex_places() const {
-  const auto before = environment_.complex().previous_positions();
-  const auto now = environment_.positions();
-  return {steps_, {before.begin(), before.end()}, {now.begin(), now.end()}};
-}
-
-void ParticleSystem::put_back(const VertexPlaces& places) {
-  for (const std::vector<Vec3>* positions : {&places.before, &places.now}) {
-    const std::span<Vec3> next = environment_.next_positions();  // without Steiner points
-    std::copy_n(positions->begin(), next.size(), next.begin());
-    environment_.move();
-  }
-  steps_ = places.steps;
-}
-
-// As after the last of these steps: where vertices were before it counts, too. Those that an edit made stand then where
-// the edit put them, not where the motion would.
-void ParticleSystem::stand_at(std::uint64_t steps) {
-  if (steps > 0) load_motion(steps);
-  if (steps > 1 && steps_ + 1 != steps) move_vertices_to(steps - 1);
-  move_vertices_to(steps);
 }
 
 Audit ParticleSystem::audit() const {

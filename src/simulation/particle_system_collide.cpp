@@ -61,7 +61,7 @@ void ParticleSystem::walls_of(std::size_t i, double dt, bool moving, NearWalls& 
   if (clearances_[i] >= r * (1.0 + wall_share)) return;
   // Where walls stand still and none is next to the sphere, search farther: the result then serves for many steps. The
   // walls within the share that counts are the same.
-  const bool next_to_wall = deforms() || (clear_[i].distance > 0.0 && clear_[i].distance < 1.5 * r);
+  const bool next_to_wall = motion_.deforms() || (clear_[i].distance > 0.0 && clear_[i].distance < 1.5 * r);
   const double reach = next_to_wall ? wall_share * r : r;
   const auto walls = walls_within(environment_.complex(), set_.states[i], r + reach, near, moving);
   clear_[i] = {set_.states[i].position, walls.empty() ? r + reach : walls.front().distance};
@@ -84,7 +84,7 @@ void ParticleSystem::find_walls(double dt, bool moving) {
   near_contacts_.resize(chunks);
   clearances_.assign(radii().size(), 0.0);
   clear_.resize(radii().size());
-  if (deforms()) clear_.assign(radii().size(), {});
+  if (motion_.deforms()) clear_.assign(radii().size(), {});
   parallel_for(radii().size(), wall_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
     const std::size_t chunk = begin / wall_grain;
     near_contacts_[chunk].clear();

@@ -1,7 +1,6 @@
-// Updates particles, deformation, field and inlets after an edit of the environment.
+// Updates particles, field and inlets after an edit of the environment.
 #include <algorithm>
 
-#include "dartcast/error.hpp"
 #include "simulation/particle_system.hpp"
 
 namespace dartcast {
@@ -11,7 +10,6 @@ void ParticleSystem::update_after_edit(const ComplexEditReport& edit, OrphanPoli
   clear_.clear();
   last_update_ = environment_.update_after_edit(set_.states, orphaned);
   remove_absorbed(last_update_, before);
-  if (deformation_) deformation_->update_after_edit(edit, environment_.positions().size());
   if (field_) field_->update_after_edit(edit, environment_.complex());
   if (force_) force_->update_after_edit(edit, environment_.complex());
   for (Inlet& inlet : inlets_) inlet.sampler.update_after_edit(environment_.complex(), edit);
@@ -33,15 +31,6 @@ void ParticleSystem::remove_absorbed(const UpdateReport& report, std::span<const
   totals_.absorbed += absorbed;
   absorbed_between_ += absorbed;
   set_.remove_rows(marks);
-}
-
-void ParticleSystem::pull(std::span<const Vec3> displacement, double duration) {
-  const auto positions = environment_.positions();
-  const bool plane = environment_.map().dimension() == 2;
-  if (plane && std::any_of(displacement.begin(), displacement.end(), [](const Vec3& d) { return d.z != 0.0; }))
-    throw InvalidArgument("simulation: a pull moves points out of the plane: in the plane every z must be 0");
-  if (!deformation_) deformation_.emplace(std::vector<DeformationStep>{}, positions);
-  deformation_->add_pull(displacement, time(), time() + duration);
 }
 
 }  // namespace dartcast

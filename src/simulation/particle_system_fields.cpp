@@ -20,7 +20,6 @@ void ParticleSystem::load_step() {
   if (options_.integrator == Integrator::rk4 && !field_)
     throw InvalidArgument(
         "simulation: the integrator rk4 follows a velocity field, but there is none: call set_field()");
-  load_motion(steps_ + 1);
   if (field_) field_->hold(time(), time() + options_.dt);
   if (force_) force_->hold(time(), time() + options_.dt);
 }

@@ -56,7 +56,6 @@ void ParticleSystem::take_over(const std::vector<std::string>& packed) {
     inlets.push_back({i.patch, PatchSampler(environment_.complex(), i.patch, sampled_part()), i.rate, i.velocity,
                       i.radius, std::move(i.user_data)});
   inlets_ = std::move(inlets);
-  stand_at(steps_);
   SavedParticles all(set_.table);
   all.truncate(0);
   for (const std::string& bytes : packed) {

@@ -35,6 +35,7 @@ const SimulationStep& Simulation::step() {
   constexpr std::uint64_t steps_between_balances = 10;
   if (parts_->spread_scene && steps() % steps_between_balances == 0) balance(*parts_);
   const double begin = time();
+  parts_->motion.load_step();
   parts_->particles.load_step();
   parts_->events.before_step();
   for (SimulationComponent* component : parts_->components) {
@@ -51,6 +52,7 @@ const SimulationStep& Simulation::step() {
 SimulationEdit Simulation::edit(const std::function<void(ComplexEdit&)>& make, OrphanPolicy orphaned) {
   SimulationEdit done;
   done.edit = parts_->environment.edit(make);
+  parts_->motion.update_after_edit(done.edit);
   for (SimulationComponent* component : parts_->components) {
     if (parts_->replaying && component != &parts_->particles) continue;
     component->update_after_edit(done.edit, orphaned);
@@ -94,7 +96,7 @@ SimulationCheckpoint Simulation::checkpoint() const {
 void Simulation::restore(const SimulationCheckpoint& saved) {
   parts_->statistics.check(saved.state());
   parts_->replaying = true;
-  parts_->particles.set_known_places(saved.state().solids.places);
+  parts_->motion.set_known_places(saved.state().solids.places);
   try {
     parts_->events.replay(saved.state().events);
   } catch (...) {
@@ -102,21 +104,27 @@ void Simulation::restore(const SimulationCheckpoint& saved) {
     throw;
   }
   parts_->replaying = false;
-  parts_->particles.set_known_places({});
+  parts_->motion.set_known_places({});
   // Whether states fit is seen only where the vertices stand as they did then. So a refusal comes late, and is undone.
   const SimulationCheckpoint former = checkpoint();
-  const VertexPlaces places = parts_->particles.vertex_places();
+  const VertexPlaces places = parts_->motion.places();
   try {
+    parts_->motion.restore(saved.state());
     for (SimulationComponent* component : parts_->components) component->restore(saved.state());
   } catch (...) {
-    parts_->particles.put_back(places);
+    parts_->motion.put_back(places);
     for (SimulationComponent* component : parts_->components) component->restore(former.state());
     throw;
   }
   parts_->events.set_log(saved.state().events);
 }
 
-void Simulation::go_to(std::uint64_t steps) { parts_->particles.go_to(steps); }
+void Simulation::go_to(std::uint64_t steps) {
+  if (particles().size() > 0)
+    throw InvalidArgument(
+        "simulation: its particles cannot follow to another step: use a simulation without particles");
+  parts_->motion.go_to(steps);
+}
 
 void Simulation::set_field(VelocityField field) {
   parts_->spread_scene.reset();
@@ -128,12 +136,12 @@ void Simulation::set_force(VectorField force) {
 }
 void Simulation::set_deformation(Deformation deformation) {
   parts_->spread_scene.reset();
-  parts_->particles.set_deformation(std::move(deformation));
+  parts_->motion.set_deformation(std::move(deformation));
 }
 
 void Simulation::pull(std::span<const Vec3> displacement, double duration) {
   parts_->spread_scene.reset();
-  parts_->particles.pull(displacement, duration);
+  parts_->motion.pull(displacement, duration);
 }
 
 void Simulation::add_inlet(Patch patch, double rate, const Vec3& velocity, double radius,
@@ -193,10 +201,10 @@ void Simulation::add(const SolidScene& solid) {
 }
 
 const SimulationOptions& Simulation::options() const { return parts_->particles.options(); }
-std::uint64_t Simulation::steps() const { return parts_->particles.steps(); }
+std::uint64_t Simulation::steps() const { return parts_->motion.steps(); }
 const Environment& Simulation::environment() const { return parts_->environment; }
 void Simulation::set_replay_hook(ReplayHook hook) { parts_->environment.set_replay_hook(std::move(hook)); }
-bool Simulation::deforms() const { return parts_->particles.deforms(); }
+bool Simulation::deforms() const { return parts_->motion.deforms(); }
 const Particles& Simulation::particles() const { return parts_->particles.particles(); }
 std::span<const std::uint64_t> Simulation::ids() const { return parts_->particles.ids(); }
 std::span<const Vec3> Simulation::velocities() const { return parts_->particles.velocities(); }

@@ -22,8 +22,9 @@ struct Simulation::Parts {
   Parts(Simulation& simulation, std::unique_ptr<Environment> own, Environment& used, const SimulationOptions& options)
       : own_environment(std::move(own)),
         environment(used),
-        particles(used, options),
-        solids(used, particles),
+        motion(used, options.dt),
+        particles(used, motion, options),
+        solids(used, motion, options.dt),
         bodies(used, particles.options(), particles.responses()),
         catheters(used, options.dt),
         statistics(particles),
@@ -45,6 +46,7 @@ struct Simulation::Parts {
   std::unique_ptr<Scene> spread_scene;  // all that the simulation was made of; none: its user has changed it since
   std::uint64_t balanced = 0;           // how often cells have moved to other ranks
   Environment& environment;
+  MovingVertices motion;
   ParticleSystem particles;
   SolidsComponent solids;
   BodiesComponent bodies;
@@ -60,10 +62,10 @@ struct Simulation::Parts {
 
   /// From now on walls move together with the solids, bodies and catheters that stop them.
   void move_walls_jointly() {
-    particles.set_mover([this](std::span<const Vec3> positions) {
+    motion.set_mover([this](std::span<const Vec3> positions) {
       std::vector<MovePartner*> partners = catheters.partners();
       if (MovePartner* const surfaces = bodies.partner()) partners.push_back(surfaces);
-      solids.move_with(particles.time(), positions, std::move(partners));
+      solids.move_with(motion.time(), positions, std::move(partners));
     });
   }
 

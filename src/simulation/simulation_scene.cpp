@@ -118,7 +118,7 @@ void Simulation::make(const Scene& scene, Threads threads, Ranks* ranks, Partiti
   parts_ = std::make_unique<Parts>(*this, std::move(own), environment, options_of(scene, ranks));
   const bool reported = partition == Partition::particles && scene.output.report && scene.output.every > 0;
   parts_->gathers_contacts = scene.output.contacts || reported || scene.statistics.options.any();
-  furnish(parts_->particles, scene, mesh, part ? part->points : std::vector<std::uint32_t>());
+  furnish(*parts_, scene, mesh, part ? part->points : std::vector<std::uint32_t>());
   if (part) parts_->spread(std::move(*part), scene);
   set_events(events_of(scene, mesh, environment.map()));
   set_remeshing(scene.remesh);

@@ -163,8 +163,8 @@ void SolidsComponent::step(double begin) {
 
 void SolidsComponent::update_after_edit(const ComplexEditReport& /*edit*/, OrphanPolicy /*orphaned*/) {
   if (solids_) solids_->update_after_edit();
-  const bool known = !places_at_edits_.empty() && places_at_edits_.back().steps == particles_.steps();
-  if (walls_were_stopped() && !known) places_at_edits_.push_back(particles_.vertex_places());
+  const bool known = !places_at_edits_.empty() && places_at_edits_.back().steps == motion_.steps();
+  if (walls_were_stopped() && !known) places_at_edits_.push_back(motion_.places());
 }
 
 void SolidsComponent::save(SimulationState& state) const {
@@ -173,7 +173,7 @@ void SolidsComponent::save(SimulationState& state) const {
   state.solids.walls_before = walls_before_;
   state.solids.walls_now = walls_now_;
   state.solids.places = places_at_edits_;
-  if (walls_were_stopped()) state.solids.places.push_back(particles_.vertex_places());
+  if (walls_were_stopped()) state.solids.places.push_back(motion_.places());
 }
 
 void SolidsComponent::restore(const SimulationState& state) {

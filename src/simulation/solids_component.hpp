@@ -11,7 +11,7 @@
 #include "dartcast/simulation.hpp"
 #include "dartcast/solids.hpp"
 #include "simulation/component.hpp"
-#include "simulation/particle_system.hpp"
+#include "simulation/moving_vertices.hpp"
 #include "simulation/rigid_pose.hpp"
 #include "solids/joint_move.hpp"
 
@@ -22,8 +22,9 @@ namespace dartcast {
 /// calls move_with() in place of Environment::move().
 class SolidsComponent final : public SimulationComponent {
  public:
-  SolidsComponent(Environment& environment, const ParticleSystem& particles)
-      : environment_(environment), particles_(particles), dt_(particles.options().dt) {}
+  /// `dt`: of a step, s.
+  SolidsComponent(Environment& environment, const MovingVertices& motion, double dt)
+      : environment_(environment), motion_(motion), dt_(dt) {}
 
   /// Throws Error that names the solid: its shape is a file or has a defect, or its place is refused.
   void add(const SolidScene& scene);
@@ -73,7 +74,7 @@ class SolidsComponent final : public SimulationComponent {
   [[nodiscard]] bool walls_were_stopped() const { return walls_before_ < 1.0 || walls_now_ < 1.0; }
 
   Environment& environment_;
-  const ParticleSystem& particles_;
+  const MovingVertices& motion_;
   double dt_;
   std::optional<SolidSet> solids_;
   std::vector<Tool> tools_;
