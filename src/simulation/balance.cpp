@@ -93,8 +93,9 @@ void furnish(Simulation::Parts& parts, const Scene& scene, const MeshData& mesh,
              std::span<const std::uint32_t> points) {
   const CellComplex& complex = parts.environment.complex();
   if (const auto field = scene_field(scene.motion.field, "the velocity field", mesh, complex))
-    parts.particles.set_field(*field);
-  if (const auto force = scene_field(scene.motion.force, "the force", mesh, complex)) parts.particles.set_force(*force);
+    parts.particles.aiming().set_field(*field);
+  if (const auto force = scene_field(scene.motion.force, "the force", mesh, complex))
+    parts.particles.aiming().set_force(*force);
   if (scene.deformation.empty()) return;
   std::vector<DeformationStep> steps = deformation_steps(scene.deformation, mesh);
   if (!points.empty()) steps = steps_of_part(std::move(steps), points);

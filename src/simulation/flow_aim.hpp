@@ -36,7 +36,7 @@ struct FlowParticles {
   std::span<std::uint8_t> aimed;
 };
 
-/// Gives particles new velocities and targets, as ParticleSystem::aim_at() does, with the same bits in every
+/// Gives particles new velocities and targets, as Aiming does one by one, with the same bits in every
 /// instruction set. Bit k of aimed[i] is set where this was done for particle 4 i + k: it is left to the caller where
 /// the particle is held or not alive or its simplex is a sliver, and at the end, where fewer than four remain.
 void aim_in_flow(const FlowScene& scene, const FlowParticles& particles, InstructionSet set = best_instruction_set());

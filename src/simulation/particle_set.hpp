@@ -11,6 +11,11 @@
 
 namespace dartcast {
 
+/// Whether a particle leaves the scene at the end of the step. Until then it stays where it is.
+inline bool leaves(ParticleStatus status) {
+  return status == ParticleStatus::absorbed || status == ParticleStatus::escaped;
+}
+
 /// The motion that a particle starts with, and its user's numbers; none of these: zeros.
 struct NewParticle {
   Vec3 velocity;

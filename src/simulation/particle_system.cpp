@@ -104,7 +104,8 @@ ParticleSystem::ParticleSystem(Environment& environment, MovingVertices& motion,
       options_(options),
       share_(options.ranks),
       responses_(responses_of(options, environment.map())),
-      set_(options.user_data.size()) {
+      set_(options.user_data.size()),
+      aiming_(environment, motion, options_) {
   check(options);
   if (environment.map().dimension() == 2 && options.gravity.z != 0.0)
     throw InvalidArgument(fmt::format("simulation: gravity is ({}, {}, {}): in the plane its z must be 0",
@@ -143,7 +144,7 @@ void ParticleSystem::move_vertices() {
 void ParticleSystem::advance_segment(unsigned segment) {
   const double dt = options_.dt / options_.substeps;
   const bool moving = motion_.deforms() && segment == 0;
-  set_fields_to(time() + segment * dt, dt);
+  aiming_.set_times(time() + segment * dt, dt);
   if (collides()) {
     {
       const ScopeTimer timer(totals_.seconds_collide);
@@ -151,31 +152,28 @@ void ParticleSystem::advance_segment(unsigned segment) {
     }
     if (moving) {
       move_vertices();
-      aim_stuck(dt);
+      aiming_.aim_stuck(set_, dt);
     }
   } else {
     const ScopeTimer timer(totals_.seconds_respond);
-    if (options_.integrator == Integrator::rk4) {
-      aim_by_runge_kutta(dt, moving);
-    } else {
-      aim(dt, moving);
-    }
+    aiming_.aim(set_, dt, moving);
   }
   const ScopeTimer timer(totals_.seconds_detect);
   const ContactCallback respond = response(dt);
   if (set_.spheres == 0) {
-    StepReport report = part_ != nullptr ? advance_in_part(acceleration(dt))
-                        : options_.wall_motion == WallMotion::simultaneous
-                            ? simultaneous_stepper_.advance(environment_, set_.states, targets_, respond, options_.step)
-                            : environment_.advance(set_.states, targets_, respond, options_.step);
-    hold_stopped(report, responses_, set_.velocities(), set_.fates(), options_.dt, acceleration(dt));
+    StepReport report =
+        part_ != nullptr ? advance_in_part(aiming_.acceleration(dt))
+        : options_.wall_motion == WallMotion::simultaneous
+            ? simultaneous_stepper_.advance(environment_, set_.states, aiming_.targets(), respond, options_.step)
+            : environment_.advance(set_.states, aiming_.targets(), respond, options_.step);
+    hold_stopped(report, responses_, set_.velocities(), set_.fates(), options_.dt, aiming_.acceleration(dt));
     append_segment(last_.report, std::move(report), segment, options_.substeps);
     return;
   }
   const std::span<const double> clearances = collides() ? clearances_ : std::span<const double>();
   SphereReport report =
-      stepper_.advance(environment_, set_.states, radii(), targets_, respond, options_.step, clearances);
-  hold_stopped(report.step, responses_, set_.velocities(), set_.fates(), options_.dt, acceleration(dt));
+      stepper_.advance(environment_, set_.states, radii(), aiming_.targets(), respond, options_.step, clearances);
+  hold_stopped(report.step, responses_, set_.velocities(), set_.fates(), options_.dt, aiming_.acceleration(dt));
   add_solved_contacts(report.step);
   append_segment(last_.report, std::move(report.step), segment, options_.substeps);
   for (const SphereOverlap& o : report.overlaps) totals_.deepest_in_wall = std::max(totals_.deepest_in_wall, o.depth);
@@ -185,7 +183,8 @@ void ParticleSystem::advance_segment(unsigned segment) {
 
 // Impulses of other spheres change velocities, too: contacts of pushed spheres know of no acceleration.
 ContactCallback ParticleSystem::response(double dt) {
-  ContactCallback free = respond_with(responses_, set_.velocities(), set_.fates(), options_.dt, acceleration(dt));
+  ContactCallback free =
+      respond_with(responses_, set_.velocities(), set_.fates(), options_.dt, aiming_.acceleration(dt));
   if (!collides()) return free;
   return [this, free, pushed = respond_with(responses_, set_.velocities(), set_.fates(), options_.dt)](
              const Contact& contact, std::span<const WallHit> walls, std::span<const WallHit> earlier) {

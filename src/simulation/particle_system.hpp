@@ -13,8 +13,8 @@
 #include "dynamics/collider.hpp"
 #include "dynamics/near_walls.hpp"
 #include "environment/part_environment.hpp"
+#include "simulation/aiming.hpp"
 #include "simulation/component.hpp"
-#include "simulation/flow_aim.hpp"
 #include "simulation/moving_vertices.hpp"
 #include "simulation/particle_set.hpp"
 #include "simulation/particle_share.hpp"
@@ -24,28 +24,13 @@
 
 namespace dartcast {
 
-/// Whether a particle leaves the scene at the end of the step. Until then it stays where it is.
-inline bool leaves(ParticleStatus status) {
-  switch (status) {
-    case ParticleStatus::alive:
-    case ParticleStatus::stuck: return false;
-    case ParticleStatus::absorbed:
-    case ParticleStatus::escaped: return true;
-  }
-  return false;
-}
-
 /// Its step also moves the vertices: with collisions between the spheres' impulses and their walk. A function with the name
 /// of one of Simulation's does the work of that function.
 class ParticleSystem final : public SimulationComponent {
  public:
   ParticleSystem(Environment& environment, MovingVertices& motion, const SimulationOptions& options);
 
-  void set_field(VelocityField field) { field_ = std::move(field); }
-  void set_force(VectorField force) { force_ = std::move(force); }
-  /// Reads what the next step needs of the fields' files, before that step changes anything. Throws as
-  /// VectorField::hold(), and InvalidArgument where an integrator has no field to follow.
-  void load_step();
+  [[nodiscard]] Aiming& aiming() { return aiming_; }
   /// Called in each step when the inlets have injected, before anything moves; empty: nothing is.
   void set_after_injection(std::function<void()> call) { after_injection_ = std::move(call); }
   /// Bodies that the spheres meet; they step after each step of the particles. Precondition: there are collisions.
@@ -111,36 +96,12 @@ class ParticleSystem final : public SimulationComponent {
     double radius;
     std::vector<double> user_data;
   };
-  struct Aim {
-    Vec3 velocity;
-    Vec3 target;
-  };
-  // Effect of gravity and drag in a segment: the same for all particles.
-  struct Forces {
-    double dt;    // s
-    double lost;  // share of the velocity relative to the flow that drag takes
-  };
-
   // In particle_system.cpp.
   void move_vertices();
   void advance_segment(unsigned segment);
   void count_contacts();
   void mark_held();
   void remove_gone();
-  // In particle_system_fields.cpp.
-  void set_fields_to(double begin, double duration);
-  void aim_by_runge_kutta(double dt, bool moving);
-  // In particle_system_aim.cpp.
-  void aim(double dt, bool moving);
-  [[nodiscard]] detail::FlowScene flow_scene(const Forces& forces, bool moving) const;
-  void aim_in_flow(const detail::FlowScene& scene, std::size_t begin, std::size_t end, std::span<std::uint8_t> aimed);
-  void aim_one(std::size_t i, const Forces& forces, bool moving);
-  void aim_in_flight(const Forces& forces, std::size_t begin, std::size_t end, bool moving);
-  [[nodiscard]] double lost_to_drag(double dt) const;
-  [[nodiscard]] Forces forces_of(double dt) const;
-  [[nodiscard]] Aim aim_at(std::size_t i, const Forces& forces, bool moving) const;
-  [[nodiscard]] Vec3 accelerated(const Vec3& v, const Vec3& flow, const Vec3& force, const Forces& forces) const;
-  [[nodiscard]] Acceleration acceleration(double dt) const;
   // In particle_system_add.cpp.
   void inject();
   void check_motion(const Vec3& velocity, double radius, std::string_view whose) const;
@@ -178,7 +139,6 @@ class ParticleSystem final : public SimulationComponent {
   void add_solved_contacts(StepReport& report);
   void take_targets();
   [[nodiscard]] ContactCallback response(double dt);
-  void aim_stuck(double dt);
 
   Environment& environment_;
   MovingVertices& motion_;
@@ -186,13 +146,11 @@ class ParticleSystem final : public SimulationComponent {
   ParticleShare share_;
   PartEnvironment* part_ = nullptr;  // none: the environment is whole
   WallResponses responses_;
-  std::optional<VelocityField> field_;
-  std::optional<VectorField> force_;  // accelerations, on top of gravity
   std::vector<Inlet> inlets_;
 
   ParticleSet set_;
   std::vector<std::uint8_t> departed_;  // in this step, to other ranks; empty: none
-  std::vector<Vec3> targets_;
+  Aiming aiming_;
   SphereStepper stepper_;
   SimultaneousStepper simultaneous_stepper_;
   Collider collider_;

@@ -96,14 +96,6 @@ void ParticleSystem::find_walls(double dt, bool moving) {
   for (const auto& part : near_contacts_) walls_.insert(walls_.end(), part.begin(), part.end());
 }
 
-// Targets of stuck particles are known only once their walls have moved.
-void ParticleSystem::aim_stuck(double dt) {
-  const Forces forces = forces_of(dt);
-  for (std::size_t i = 0; i < set_.fates().size(); ++i) {
-    if (set_.fates()[i] == ParticleStatus::stuck) targets_[i] = flushed(aim_at(i, forces, true).target);
-  }
-}
-
 // The contacts of spheres that came to walls among others. The time is that of the way without impulses; the end of the
 // step where only another sphere brings it there.
 void ParticleSystem::note_contacts(std::span<const WallContact> walls, double dt) {
@@ -113,7 +105,7 @@ void ParticleSystem::note_contacts(std::span<const WallContact> walls, double dt
     Contact c;
     c.particle = w.sphere;
     c.wall_displacement = w.wall_velocity * dt;
-    c.displacement = targets_[w.sphere] - x - c.wall_displacement;
+    c.displacement = aiming_.targets()[w.sphere] - x - c.wall_displacement;
     const double nearing = -dot(c.displacement, w.normal);
     c.time_of_impact = w.gap <= 0.0 ? 0.0 : nearing > w.gap ? w.gap / nearing : 1.0;
     c.unused = c.displacement * (1.0 - c.time_of_impact);
@@ -151,17 +143,17 @@ void ParticleSystem::add_solved_contacts(StepReport& report) {
 
 // The ways that the solver leaves to the spheres.
 void ParticleSystem::take_targets() {
-  pushed_.assign(targets_.size(), 0);
-  for (std::size_t i = 0; i < targets_.size(); ++i) {
+  pushed_.assign(aiming_.targets().size(), 0);
+  for (std::size_t i = 0; i < aiming_.targets().size(); ++i) {
     if (set_.fates()[i] != ParticleStatus::alive || set_.states[i].held) continue;
     const Vec3 target = flushed(set_.states[i].position + displacements_[i]);
-    pushed_[i] = target != targets_[i] ? 1 : 0;
-    targets_[i] = target;
+    pushed_[i] = target != aiming_.targets()[i] ? 1 : 0;
+    aiming_.targets()[i] = target;
   }
 }
 
 void ParticleSystem::collide(double dt, bool moving) {
-  aim(dt, false);
+  aiming_.aim(set_, dt, false);
   weigh();
   find_walls(dt, moving);
   const CollisionOptions& c = *options_.collisions;
@@ -172,7 +164,7 @@ void ParticleSystem::collide(double dt, bool moving) {
   solver.iterations = c.iterations;
   solver.position_iterations = c.position_iterations;
   solver.resting_speed = 2.0 * norm(options_.gravity) * dt;
-  solver.acceleration = acceleration(dt).value;
+  solver.acceleration = aiming_.acceleration(dt).value;
   const CellComplex& complex = environment_.complex();
   const CollidingSpheres spheres = {set_.states.states(), ids(),          met_radii_,      inverse_masses_, clearances_,
                                     set_.velocities(),    displacements_, options_.gravity};

@@ -10,8 +10,7 @@ void ParticleSystem::update_after_edit(const ComplexEditReport& edit, OrphanPoli
   clear_.clear();
   last_update_ = environment_.update_after_edit(set_.states, orphaned);
   remove_absorbed(last_update_, before);
-  if (field_) field_->update_after_edit(edit, environment_.complex());
-  if (force_) force_->update_after_edit(edit, environment_.complex());
+  aiming_.update_after_edit(edit);
   for (Inlet& inlet : inlets_) inlet.sampler.update_after_edit(environment_.complex(), edit);
 }
 

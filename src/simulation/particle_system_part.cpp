@@ -81,7 +81,7 @@ StepReport ParticleSystem::advance_in_part(const Acceleration& acceleration) {
     return respond_with(responses_, set_.velocities(), set_.fates(), options_.dt, acceleration)(c, walls, earlier);
   };
   PartTravel data(set_.table);
-  return part_->advance(set_.states, targets_, respond, options_.step, data, departed_);
+  return part_->advance(set_.states, aiming_.targets(), respond, options_.step, data, departed_);
 }
 
 // All ranks draw for each particle. The one whose cell it is adds it; where rounding has put the point outside, all draw

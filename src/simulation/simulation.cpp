@@ -36,7 +36,7 @@ const SimulationStep& Simulation::step() {
   if (parts_->spread_scene && steps() % steps_between_balances == 0) balance(*parts_);
   const double begin = time();
   parts_->motion.load_step();
-  parts_->particles.load_step();
+  parts_->particles.aiming().load_step();
   parts_->events.before_step();
   for (SimulationComponent* component : parts_->components) {
     const ScopeTimer timer(parts_->clock_of(component));
@@ -128,11 +128,11 @@ void Simulation::go_to(std::uint64_t steps) {
 
 void Simulation::set_field(VelocityField field) {
   parts_->spread_scene.reset();
-  parts_->particles.set_field(std::move(field));
+  parts_->particles.aiming().set_field(std::move(field));
 }
 void Simulation::set_force(VectorField force) {
   parts_->spread_scene.reset();
-  parts_->particles.set_force(std::move(force));
+  parts_->particles.aiming().set_force(std::move(force));
 }
 void Simulation::set_deformation(Deformation deformation) {
   parts_->spread_scene.reset();

@@ -1,0 +1,185 @@
+// The velocities that gravity, drag and the flow give to particles, and the targets that these lead to.
+#include "simulation/aiming.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "base/elementary.hpp"
+#include "base/parallel.hpp"
+#include "complex/simplex.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/predicates.hpp"
+#include "simulation/runge_kutta.hpp"
+#include "tracking/carry.hpp"
+
+namespace dartcast {
+
+namespace {
+
+constexpr std::size_t aim_grain = 512;  // a multiple of the lanes of a vector
+constexpr std::size_t tracer_grain = 256;
+
+}  // namespace
+
+void Aiming::load_step() {
+  if (options_.integrator == Integrator::rk4 && !field_)
+    throw InvalidArgument(
+        "simulation: the integrator rk4 follows a velocity field, but there is none: call set_field()");
+  if (field_) field_->hold(motion_.time(), motion_.time() + options_.dt);
+  if (force_) force_->hold(motion_.time(), motion_.time() + options_.dt);
+}
+
+void Aiming::update_after_edit(const ComplexEditReport& edit) {
+  if (field_) field_->update_after_edit(edit, environment_.complex());
+  if (force_) force_->update_after_edit(edit, environment_.complex());
+}
+
+void Aiming::set_times(double begin, double duration) {
+  const std::array<double, 3> times = {begin, begin + 0.5 * duration, begin + duration};
+  const std::size_t count = options_.integrator == Integrator::rk4 ? 3 : 1;
+  const CellComplex& complex = environment_.complex();
+  if (field_) field_->set_times(std::span(times).first(count), complex, environment_.threads());
+  if (force_) force_->set_times(std::span(times).first(1), complex, environment_.threads());
+}
+
+// The share of a velocity that drag takes within dt.
+double Aiming::lost_to_drag(double dt) const { return -exponential_less_one(-options_.drag * dt); }
+
+Acceleration Aiming::acceleration(double dt) const {
+  if (field_ || force_) return {};
+  if (options_.drag == 0.0) return {options_.gravity, dt};
+  return {options_.gravity * (lost_to_drag(dt) / (options_.drag * dt)), dt};
+}
+
+// Inline: a loop over all particles calls it.
+inline Vec3 Aiming::accelerated(const Segment& segment, const Vec3& v, const Vec3& flow, const Vec3& force) const {
+  const Vec3 acceleration = force_ ? options_.gravity + force : options_.gravity;
+  if (options_.drag == 0.0) return field_ ? flow : v + acceleration * segment.dt;
+  return v + (flow + acceleration * (1.0 / options_.drag) - v) * segment.lost;
+}
+
+Aiming::Segment Aiming::segment_of(ParticleSet& set, double dt, bool moving) {
+  targets_.resize(set.states.size());
+  return {set.states, set.fates(), set.velocities(), dt, options_.drag > 0.0 ? lost_to_drag(dt) : 0.0, moving};
+}
+
+void Aiming::aim(ParticleSet& set, double dt, bool moving) {
+  const Segment segment = segment_of(set, dt, moving);
+  options_.integrator == Integrator::rk4 ? aim_by_runge_kutta(segment) : aim_at_field(segment);
+}
+
+// Most particles of a flow are aimed four at a time, and most of those without one in a short loop; the others one by
+// one.
+void Aiming::aim_at_field(const Segment& segment) {
+  const bool in_fours = field_ && !force_ && field_->place() == FieldPlace::points;
+  const bool flies = !field_ && !force_;
+  const detail::FlowScene scene = in_fours ? flow_scene(segment) : detail::FlowScene{};
+  parallel_for(targets_.size(), aim_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
+    std::array<std::uint8_t, aim_grain / 4> aimed{};
+    if (in_fours) aim_in_flow(segment, scene, begin, end, aimed);
+    if (flies) return aim_in_flight(segment, begin, end);
+    for (std::size_t i = begin; i < end; ++i) {
+      if ((aimed[(i - begin) / 4] >> (i - begin) % 4 & 1U) == 0) aim_one(segment, i);
+    }
+  });
+}
+
+void Aiming::aim_one(const Segment& segment, std::size_t i) {
+  const bool leaving = leaves(segment.fates[i]);
+  const Aim a = leaving ? Aim{segment.velocities[i], segment.particles[i].position} : aim_at(segment, i);
+  segment.velocities[i] = a.velocity;
+  targets_[i] = flushed(a.target);
+}
+
+// As aim_one() without a field, in a loop that needs no look at cells.
+void Aiming::aim_in_flight(const Segment& segment, std::size_t begin, std::size_t end) {
+  const std::span<const ParticleState> states = segment.particles.states();
+  const std::span<Vec3> velocities = segment.velocities;
+  for (std::size_t i = begin; i < end; ++i) {
+    if (states[i].held || segment.fates[i] != ParticleStatus::alive) {
+      aim_one(segment, i);
+      continue;
+    }
+    velocities[i] = accelerated(segment, velocities[i], {}, {});
+    targets_[i] = flushed(states[i].position + velocities[i] * segment.dt);
+  }
+}
+
+detail::FlowScene Aiming::flow_scene(const Segment& segment) const {
+  const CellComplex& complex = environment_.complex();
+  detail::FlowScene scene;
+  scene.now = complex.positions().data();
+  scene.before = motion_.deforms() ? complex.previous_positions().data() : scene.now;
+  scene.values = field_->values().data();
+  scene.rest = field_->rest().empty() ? nullptr : field_->rest().data();
+  scene.planar = complex.map().dimension() == 2;
+  scene.moving = segment.moving;
+  scene.per_move = 1.0 / options_.dt;
+  scene.dt = segment.dt;
+  scene.drags = options_.drag > 0.0;
+  scene.lost = segment.lost;
+  if (scene.drags) scene.terminal = options_.gravity * (1.0 / options_.drag);
+  return scene;
+}
+
+void Aiming::aim_in_flow(const Segment& segment, const detail::FlowScene& scene, std::size_t begin, std::size_t end,
+                         std::span<std::uint8_t> aimed) {
+  const std::size_t size = end - begin;
+  const Particles& particles = segment.particles;
+  detail::aim_in_flow(scene, {particles.states().subspan(begin, size), particles.vertex_numbers().subspan(begin, size),
+                              segment.fates.subspan(begin, size), segment.velocities.subspan(begin, size),
+                              std::span(targets_).subspan(begin, size), aimed.first(size / 4)});
+}
+
+void Aiming::aim_by_runge_kutta(const Segment& segment) {
+  const RungeKuttaStep step = {environment_.complex(), *field_, segment.dt, segment.moving};
+  parallel_for(targets_.size(), tracer_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const ParticleState& s = segment.particles[i];
+      const bool follows = segment.fates[i] == ParticleStatus::alive && !s.held;
+      const Aim a = follows ? Aim{runge_kutta_velocity(step, s), {}} : aim_at(segment, i);
+      segment.velocities[i] = a.velocity;
+      targets_[i] = flushed(follows ? s.position + a.velocity * segment.dt : a.target);
+    }
+  });
+}
+
+void Aiming::aim_stuck(ParticleSet& set, double dt) {
+  const Segment segment = segment_of(set, dt, true);
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    if (segment.fates[i] == ParticleStatus::stuck) targets_[i] = flushed(aim_at(segment, i).target);
+  }
+}
+
+// A particle's velocity after the acceleration, and its target relative to positions before a move. A held particle
+// takes no step. A stuck particle goes exactly where its wall carries it, to the last bit, so that no contact follows.
+Aiming::Aim Aiming::aim_at(const Segment& segment, std::size_t i) const {
+  const ParticleState& s = segment.particles[i];
+  if (s.held) return {segment.velocities[i], s.position};
+  const bool stuck = segment.fates[i] == ParticleStatus::stuck;
+  if (!stuck && !field_ && !force_) {
+    const Vec3 v = accelerated(segment, segment.velocities[i], {}, {});
+    return {v, s.position + v * segment.dt};
+  }
+  if (stuck && !segment.moving) return {segment.velocities[i], s.position};
+  const CellComplex& complex = environment_.complex();
+  const Corners now = complex.corners(s.at());
+  const Corners before = motion_.deforms() ? complex.previous_corners(s.at()) : now;
+  const Weights w = detail::barycentric(segment.moving ? before : now, s.position);
+  const Vec3 carried = detail::combine(now, w);
+  const Vec3 mesh = (carried - detail::combine(before, w)) * (1.0 / options_.dt);
+  if (stuck) {
+    const bool positive = volume_sign(now) == Sign::positive;
+    return {mesh, positive ? detail::carried(complex, s.at(), w).position : s.position};
+  }
+  const Vec3 force = force_ ? force_->at(complex, s.at(), w, now) : Vec3{};
+  const Vec3 flow = field_ ? field_->at(complex, s.at(), w, now) : Vec3{};
+  if (!field_ || field_->frame() == FieldFrame::space) {
+    const Vec3 v = accelerated(segment, segment.velocities[i], flow, force);
+    return {v, s.position + v * segment.dt};
+  }
+  const Vec3 v = accelerated(segment, segment.velocities[i], flow + mesh, force);
+  return {v, (segment.moving ? carried : s.position) + (v - mesh) * segment.dt};
+}
+
+}  // namespace dartcast

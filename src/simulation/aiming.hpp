@@ -1,0 +1,76 @@
+// The forces on particles, and where they lead in a step. Not installed.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "dartcast/simulation.hpp"
+#include "simulation/flow_aim.hpp"
+#include "simulation/moving_vertices.hpp"
+#include "simulation/particle_set.hpp"
+
+namespace dartcast {
+
+/// Gravity, drag, the velocity field and the force of a simulation.
+class Aiming {
+ public:
+  /// All outlive it.
+  Aiming(const Environment& environment, const MovingVertices& motion, const SimulationOptions& options)
+      : environment_(environment), motion_(motion), options_(options) {}
+
+  void set_field(VelocityField field) { field_ = std::move(field); }
+  void set_force(VectorField force) { force_ = std::move(force); }
+  /// Reads what the next step needs of the fields' files, before that step changes anything. Throws as
+  /// VectorField::hold(), and InvalidArgument where an integrator has no field to follow.
+  void load_step();
+  void update_after_edit(const ComplexEditReport& edit);
+
+  /// Brings the fields to the times of a segment of a step.
+  void set_times(double begin, double duration);
+  /// Gives each particle the velocity and the target of a segment. `moving`: their positions are from before the last move.
+  void aim(ParticleSet& set, double dt, bool moving);
+  /// Targets of stuck particles are known only once their walls have moved.
+  void aim_stuck(ParticleSet& set, double dt);
+  /// By particle.
+  [[nodiscard]] std::span<Vec3> targets() { return targets_; }
+  /// The acceleration that contacts know of: none where a field or a force changes velocities, too. Drag reduces it.
+  [[nodiscard]] Acceleration acceleration(double dt) const;
+
+ private:
+  struct Segment {
+    const Particles& particles;
+    std::span<const ParticleStatus> fates;
+    std::span<Vec3> velocities;
+    double dt;    // s
+    double lost;  // share of the velocity relative to the flow that drag takes
+    bool moving;
+  };
+  struct Aim {
+    Vec3 velocity;
+    Vec3 target;
+  };
+
+  [[nodiscard]] Segment segment_of(ParticleSet& set, double dt, bool moving);
+  void aim_at_field(const Segment& segment);
+  void aim_by_runge_kutta(const Segment& segment);
+  void aim_one(const Segment& segment, std::size_t i);
+  void aim_in_flight(const Segment& segment, std::size_t begin, std::size_t end);
+  void aim_in_flow(const Segment& segment, const detail::FlowScene& scene, std::size_t begin, std::size_t end,
+                   std::span<std::uint8_t> aimed);
+  [[nodiscard]] detail::FlowScene flow_scene(const Segment& segment) const;
+  [[nodiscard]] Aim aim_at(const Segment& segment, std::size_t i) const;
+  [[nodiscard]] Vec3 accelerated(const Segment& segment, const Vec3& v, const Vec3& flow, const Vec3& force) const;
+  [[nodiscard]] double lost_to_drag(double dt) const;
+
+  const Environment& environment_;
+  const MovingVertices& motion_;
+  const SimulationOptions& options_;
+  std::optional<VelocityField> field_;
+  std::optional<VectorField> force_;  // accelerations, on top of gravity
+  std::vector<Vec3> targets_;
+};
+
+}  // namespace dartcast
