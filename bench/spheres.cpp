@@ -66,7 +66,9 @@ void time_both_searches(const Simulation& flow, double dt, SphereRow& row) {
   row.pairs_by_grid_ns = time(PairSearch::grid);
 }
 
-const Collider& collider_of(const Simulation& simulation) { return simulation.parts().particles.collider(); }
+const Collider& collider_of(const Simulation& simulation) {
+  return simulation.parts().particles.sphere_contacts().collider();
+}
 
 }  // namespace
 

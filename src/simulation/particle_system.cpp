@@ -105,7 +105,8 @@ ParticleSystem::ParticleSystem(Environment& environment, MovingVertices& motion,
       share_(options.ranks),
       responses_(responses_of(options, environment.map())),
       set_(options.user_data.size()),
-      aiming_(environment, motion, options_) {
+      aiming_(environment, motion, options_),
+      contacts_(environment, motion, options_, responses_) {
   check(options);
   if (environment.map().dimension() == 2 && options.gravity.z != 0.0)
     throw InvalidArgument(fmt::format("simulation: gravity is ({}, {}, {}): in the plane its z must be 0",
@@ -148,7 +149,8 @@ void ParticleSystem::advance_segment(unsigned segment) {
   if (collides()) {
     {
       const ScopeTimer timer(totals_.seconds_collide);
-      collide(dt, moving);
+      aiming_.aim(set_, dt, false);
+      last_.collisions += contacts_.collide(set_, aiming_.targets(), dt, moving, aiming_.acceleration(dt).value);
     }
     if (moving) {
       move_vertices();
@@ -170,11 +172,11 @@ void ParticleSystem::advance_segment(unsigned segment) {
     append_segment(last_.report, std::move(report), segment, options_.substeps);
     return;
   }
-  const std::span<const double> clearances = collides() ? clearances_ : std::span<const double>();
+  const std::span<const double> clearances = collides() ? contacts_.clearances() : std::span<const double>();
   SphereReport report =
       stepper_.advance(environment_, set_.states, radii(), aiming_.targets(), respond, options_.step, clearances);
   hold_stopped(report.step, responses_, set_.velocities(), set_.fates(), options_.dt, aiming_.acceleration(dt));
-  add_solved_contacts(report.step);
+  contacts_.add_to(report.step);
   append_segment(last_.report, std::move(report.step), segment, options_.substeps);
   for (const SphereOverlap& o : report.overlaps) totals_.deepest_in_wall = std::max(totals_.deepest_in_wall, o.depth);
   totals_.wall_overlaps += report.overlaps.size();
@@ -188,7 +190,7 @@ ContactCallback ParticleSystem::response(double dt) {
   if (!collides()) return free;
   return [this, free, pushed = respond_with(responses_, set_.velocities(), set_.fates(), options_.dt)](
              const Contact& contact, std::span<const WallHit> walls, std::span<const WallHit> earlier) {
-    return (pushed_[contact.particle] != 0 ? pushed : free)(contact, walls, earlier);
+    return (contacts_.pushed(contact.particle) ? pushed : free)(contact, walls, earlier);
   };
 }
 
@@ -229,7 +231,7 @@ void ParticleSystem::remove_gone() {
   totals_.escaped += last_.escaped;
   if (absorbed + last_.escaped == 0 && departed_.empty()) return;
   set_.remove(gone);
-  clear_.clear();
+  contacts_.forget_walls();
   departed_.clear();
   if (part_ != nullptr) set_.put_in_order_of_ids();
 }

@@ -10,8 +10,6 @@
 #include <vector>
 
 #include "dartcast/simulation.hpp"
-#include "dynamics/collider.hpp"
-#include "dynamics/near_walls.hpp"
 #include "environment/part_environment.hpp"
 #include "simulation/aiming.hpp"
 #include "simulation/component.hpp"
@@ -20,7 +18,7 @@
 #include "simulation/particle_share.hpp"
 #include "simulation/seeding.hpp"
 #include "simulation/simulation_state.hpp"
-#include "simulation/sphere_bodies.hpp"
+#include "simulation/sphere_contacts.hpp"
 
 namespace dartcast {
 
@@ -33,8 +31,6 @@ class ParticleSystem final : public SimulationComponent {
   [[nodiscard]] Aiming& aiming() { return aiming_; }
   /// Called in each step when the inlets have injected, before anything moves; empty: nothing is.
   void set_after_injection(std::function<void()> call) { after_injection_ = std::move(call); }
-  /// Bodies that the spheres meet; they step after each step of the particles. Precondition: there are collisions.
-  void set_bodies(Bodies& bodies) { bodies_ = &bodies; }
   /// The environment is a part of one that ranks share by cells. Precondition: there are no particles.
   void set_part(PartEnvironment& part);
   /// The particles as bytes, for each rank those in the cells that owner(cell) gives it.
@@ -85,7 +81,8 @@ class ParticleSystem final : public SimulationComponent {
     return table()[set_.table.user_data].subspan(i * width(), width());
   }
   [[nodiscard]] const SimulationTotals& totals() const { return totals_; }
-  [[nodiscard]] const Collider& collider() const { return collider_; }
+  [[nodiscard]] SphereContacts& sphere_contacts() { return contacts_; }
+  [[nodiscard]] const SphereContacts& sphere_contacts() const { return contacts_; }
 
  private:
   struct Inlet {
@@ -126,18 +123,7 @@ class ParticleSystem final : public SimulationComponent {
   // In particle_system_checkpoint.cpp.
   [[nodiscard]] bool is_mine(std::uint64_t id, const ParticleState& state) const;
   void put_in_place_of_all(const SavedParticles& saved);
-  // With collisions, in particle_system_collide.cpp.
   [[nodiscard]] bool collides() const { return options_.collisions && set_.spheres > 0; }
-  [[nodiscard]] double mass(std::size_t i) const;
-  [[nodiscard]] bool meets_bodies() const { return bodies_ != nullptr && bodies_->size() > 0; }
-  void collide(double dt, bool moving);
-  void weigh();
-  void find_walls(double dt, bool moving);
-  [[nodiscard]] double clearance(std::size_t i) const;
-  void walls_of(std::size_t i, double dt, bool moving, NearWalls& near, std::vector<WallContact>& found);
-  void note_contacts(std::span<const WallContact> walls, double dt);
-  void add_solved_contacts(StepReport& report);
-  void take_targets();
   [[nodiscard]] ContactCallback response(double dt);
 
   Environment& environment_;
@@ -153,23 +139,7 @@ class ParticleSystem final : public SimulationComponent {
   Aiming aiming_;
   SphereStepper stepper_;
   SimultaneousStepper simultaneous_stepper_;
-  Collider collider_;
-  Bodies* bodies_ = nullptr;
-  SphereBodyCollider body_collider_;  // in place of the other one while there are bodies
-  std::vector<double> met_radii_;     // in collisions: 0 for those without contacts
-  std::vector<double> inverse_masses_;
-  struct Clear {  // no wall is nearer to this place
-    Vec3 centre;
-    double distance = 0.0;
-  };
-  std::vector<Clear> clear_;  // by particle; until walls move or are edited
-  std::vector<double> clearances_;
-  std::vector<Vec3> displacements_;
-  std::vector<NearWalls> near_;  // by chunk
-  std::vector<std::vector<WallContact>> near_contacts_;
-  std::vector<WallContact> walls_;
-  ContactList solved_;                  // of this segment, with walls whose impulses the solver gave
-  std::vector<std::uint8_t> pushed_;    // by particle: whether the solver changed its way
+  SphereContacts contacts_;
   std::uint64_t absorbed_between_ = 0;  // by edits since the last step
   SimulationStep last_;
   UpdateReport last_update_;

@@ -18,9 +18,7 @@ void ParticleSystem::save(SimulationState& state) const {
   }
   saved.totals = totals_;
   saved.gone = gone_;
-  const auto cached_impulses =
-      meets_bodies() ? body_collider_.solver().cached_impulses() : collider_.solver().cached_impulses();
-  saved.impulses.assign(cached_impulses.begin(), cached_impulses.end());
+  contacts_.save(saved);
 }
 
 void ParticleSystem::restore(const SimulationState& state) {
@@ -31,8 +29,7 @@ void ParticleSystem::restore(const SimulationState& state) {
   if (saved.table[saved.table.user_data].size() != saved.table.rows() * width())
     throw InvalidArgument("simulation: the checkpoint has other user data: give the options that it was saved with");
   put_in_place_of_all(saved.table);
-  body_collider_.solver().set_cached_impulses(saved.impulses);  // the one that continues drops the other's
-  collider_.solver().set_cached_impulses(saved.impulses);
+  contacts_.restore(saved);
   set_.next_id = saved.next_id;
   totals_ = {};
   totals_.start = saved.totals.start;
@@ -67,7 +64,6 @@ void ParticleSystem::put_in_place_of_all(const SavedParticles& saved) {
   set_.states = environment_.restored(states, weights);
   set_.table = std::move(table);
   set_.count_spheres();
-  clear_.clear();
 }
 
 Audit ParticleSystem::audit() const {

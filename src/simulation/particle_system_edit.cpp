@@ -7,7 +7,7 @@ namespace dartcast {
 
 void ParticleSystem::update_after_edit(const ComplexEditReport& edit, OrphanPolicy orphaned) {
   const std::vector<ParticleState> before(set_.states.states().begin(), set_.states.states().end());
-  clear_.clear();
+  contacts_.forget_walls();
   last_update_ = environment_.update_after_edit(set_.states, orphaned);
   remove_absorbed(last_update_, before);
   aiming_.update_after_edit(edit);

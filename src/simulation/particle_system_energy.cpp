@@ -1,6 +1,5 @@
-// The masses and the energy of particles.
-#include <algorithm>
-#include <numbers>
+// The energy of particles.
+#include <array>
 #include <vector>
 
 #include "base/exact_sum.hpp"
@@ -21,22 +20,13 @@ struct ExactEnergy {
 
 }  // namespace
 
-// Precondition: there are collisions.
-double ParticleSystem::mass(std::size_t i) const {
-  if (radii()[i] == 0.0) return 0.0;
-  constexpr double smallest_weighed = 0x1p-100;  // a smaller sphere gets the mass of this one: its own could be 0
-  const double r = std::max(radii()[i], smallest_weighed);
-  const bool plane = environment_.map().dimension() == 2;
-  return options_.collisions->density * (plane ? std::numbers::pi * r * r : 4.0 / 3.0 * std::numbers::pi * r * r * r);
-}
-
 // Sums are exact: they do not depend on how threads and ranks share the particles.
 SimulationEnergy ParticleSystem::energy() const {
   std::vector<ExactEnergy> parts(chunk_count(set_.states.size(), energy_grain));
   parallel_for(set_.states.size(), energy_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
     ExactEnergy& part = parts[begin / energy_grain];
     for (std::size_t i = begin; i < end; ++i) {
-      const double m = options_.collisions ? mass(i) : 1.0;
+      const double m = options_.collisions ? contacts_.mass(radii()[i]) : 1.0;
       part.kinetic.add(0.5 * m * dot(velocities()[i], velocities()[i]));
       part.potential.add(-(m * dot(options_.gravity, set_.states[i].position)));
     }

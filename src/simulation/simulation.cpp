@@ -172,7 +172,7 @@ namespace {
 
 // With collisions the spheres meet the bodies.
 void introduce(ParticleSystem& particles, BodiesComponent& bodies) {
-  if (particles.options().collisions && bodies.bodies()) particles.set_bodies(*bodies.bodies());
+  if (particles.options().collisions && bodies.bodies()) particles.sphere_contacts().set_bodies(*bodies.bodies());
 }
 
 }  // namespace

@@ -1,12 +1,14 @@
 // The collisions of spheres: masses, walls near by, impulses.
+#include "simulation/sphere_contacts.hpp"
+
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <tuple>
 
 #include "base/parallel.hpp"
 #include "response/incident_walls.hpp"
-#include "simulation/particle_system.hpp"
 #include "tracking/representable_point.hpp"
 
 namespace dartcast {
@@ -33,63 +35,75 @@ std::optional<WallSurface> solved_surface(const WallResponse& response) {
 
 }  // namespace
 
+double SphereContacts::mass(double radius) const {
+  if (radius == 0.0) return 0.0;
+  constexpr double smallest_weighed = 0x1p-100;  // a smaller sphere gets the mass of this one: its own could be 0
+  const double r = std::max(radius, smallest_weighed);
+  const bool plane = environment_.map().dimension() == 2;
+  return options_.collisions->density * (plane ? std::numbers::pi * r * r : 4.0 / 3.0 * std::numbers::pi * r * r * r);
+}
+
 // Masses, and which spheres take part. Held spheres and those that left have no contacts; stuck ones cannot be pushed.
-void ParticleSystem::weigh() {
-  met_radii_.resize(radii().size());
-  inverse_masses_.resize(radii().size());
-  displacements_.resize(radii().size());
-  for (std::size_t i = 0; i < radii().size(); ++i) {
-    const double r = radii()[i];
+void SphereContacts::weigh(ParticleSet& set) {
+  const std::span<const double> radii = set.table[set.table.radius];
+  met_radii_.resize(radii.size());
+  inverse_masses_.resize(radii.size());
+  displacements_.resize(radii.size());
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    const double r = radii[i];
     const bool meets =
-        !set_.states[i].held && (set_.fates()[i] == ParticleStatus::alive || set_.fates()[i] == ParticleStatus::stuck);
+        !set.states[i].held && (set.fates()[i] == ParticleStatus::alive || set.fates()[i] == ParticleStatus::stuck);
     met_radii_[i] = meets ? r : 0.0;
-    const double m = mass(i);
-    inverse_masses_[i] = set_.fates()[i] == ParticleStatus::alive && m > 0.0 ? 1.0 / m : 0.0;
+    const double m = mass(r);
+    inverse_masses_[i] = set.fates()[i] == ParticleStatus::alive && m > 0.0 ? 1.0 / m : 0.0;
   }
 }
 
 // The distance that is still free of walls around a sphere, from where it was last measured. Distances were rounded, so
 // the result is a little smaller.
-double ParticleSystem::clearance(std::size_t i) const {
-  const double room = clear_[i].distance * (1.0 - 0x1p-20) - norm(set_.states[i].position - clear_[i].centre);
+double SphereContacts::clearance(const ParticleSet& set, std::size_t i) const {
+  const double room = clear_[i].distance * (1.0 - 0x1p-20) - norm(set.states[i].position - clear_[i].centre);
   return std::max(0.0, room);
 }
 
-void ParticleSystem::walls_of(std::size_t i, double dt, bool moving, NearWalls& near, std::vector<WallContact>& found) {
+void SphereContacts::walls_of(ParticleSet& set, std::size_t i, double dt, bool moving, NearWalls& near,
+                              std::vector<WallContact>& found) {
   const double r = met_radii_[i];
-  clearances_[i] = clearance(i);
+  clearances_[i] = clearance(set, i);
   if (clearances_[i] >= r * (1.0 + wall_share)) return;
   // Where walls stand still and none is next to the sphere, search farther: the result then serves for many steps. The
   // walls within the share that counts are the same.
   const bool next_to_wall = motion_.deforms() || (clear_[i].distance > 0.0 && clear_[i].distance < 1.5 * r);
   const double reach = next_to_wall ? wall_share * r : r;
-  const auto walls = walls_within(environment_.complex(), set_.states[i], r + reach, near, moving);
-  clear_[i] = {set_.states[i].position, walls.empty() ? r + reach : walls.front().distance};
-  clearances_[i] = clearance(i);
+  const auto walls = walls_within(environment_.complex(), set.states[i], r + reach, near, moving);
+  clear_[i] = {set.states[i].position, walls.empty() ? r + reach : walls.front().distance};
+  clearances_[i] = clearance(set, i);
   for (const WallFeature& w : walls) {
     const std::optional<WallSurface> surface = solved_surface(responses_.of(w.patch));
     if (!surface) continue;
     const Vec3 velocity = moving ? w.displacement * (1.0 / dt) : Vec3{};
     const double gap = w.distance - r;
-    const bool meets = gap <= wall_share * r && dot(set_.velocities()[i] - velocity, w.normal) * dt <= -gap;
+    const bool meets = gap <= wall_share * r && dot(set.velocities()[i] - velocity, w.normal) * dt <= -gap;
     if (gap > near_share * r && !meets) continue;
     found.push_back({static_cast<std::uint32_t>(i), w.normal, gap, velocity, surface->restitution, surface->friction,
                      w.face, w.triangle});
   }
 }
 
-void ParticleSystem::find_walls(double dt, bool moving) {
-  const std::size_t chunks = chunk_count(radii().size(), wall_grain);
+void SphereContacts::find_walls(ParticleSet& set, double dt, bool moving) {
+  const std::size_t count = set.states.size();
+  const std::size_t chunks = chunk_count(count, wall_grain);
   if (near_.size() < chunks) near_.resize(chunks);
   near_contacts_.resize(chunks);
-  clearances_.assign(radii().size(), 0.0);
-  clear_.resize(radii().size());
-  if (motion_.deforms()) clear_.assign(radii().size(), {});
-  parallel_for(radii().size(), wall_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
+  clearances_.assign(count, 0.0);
+  clear_.resize(count);
+  if (motion_.deforms()) clear_.assign(count, {});
+  parallel_for(count, wall_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
     const std::size_t chunk = begin / wall_grain;
     near_contacts_[chunk].clear();
     for (std::size_t i = begin; i < end; ++i) {
-      if (met_radii_[i] > 0.0 && inverse_masses_[i] > 0.0) walls_of(i, dt, moving, near_[chunk], near_contacts_[chunk]);
+      if (met_radii_[i] > 0.0 && inverse_masses_[i] > 0.0)
+        walls_of(set, i, dt, moving, near_[chunk], near_contacts_[chunk]);
     }
   });
   walls_.clear();
@@ -98,14 +112,15 @@ void ParticleSystem::find_walls(double dt, bool moving) {
 
 // The contacts of spheres that came to walls among others. The time is that of the way without impulses; the end of the
 // step where only another sphere brings it there.
-void ParticleSystem::note_contacts(std::span<const WallContact> walls, double dt) {
+void SphereContacts::note_contacts(const ParticleSet& set, std::span<const Vec3> targets,
+                                   std::span<const WallContact> walls, double dt) {
   solved_.clear();
   for (const WallContact& w : walls) {
-    const Vec3& x = set_.states[w.sphere].position;
+    const Vec3& x = set.states[w.sphere].position;
     Contact c;
     c.particle = w.sphere;
     c.wall_displacement = w.wall_velocity * dt;
-    c.displacement = aiming_.targets()[w.sphere] - x - c.wall_displacement;
+    c.displacement = targets[w.sphere] - x - c.wall_displacement;
     const double nearing = -dot(c.displacement, w.normal);
     c.time_of_impact = w.gap <= 0.0 ? 0.0 : nearing > w.gap ? w.gap / nearing : 1.0;
     c.unused = c.displacement * (1.0 - c.time_of_impact);
@@ -127,7 +142,7 @@ void ParticleSystem::note_contacts(std::span<const WallContact> walls, double dt
 }
 
 // Puts them before those of the spheres' own steps, with times that do not fall.
-void ParticleSystem::add_solved_contacts(StepReport& report) {
+void SphereContacts::add_to(StepReport& report) {
   if (solved_.contacts.empty()) return;
   for (const Contact& c : solved_.contacts) ++report.counters.contacts[static_cast<std::size_t>(c.kind)];
   solved_.append(report.contacts);
@@ -142,20 +157,20 @@ void ParticleSystem::add_solved_contacts(StepReport& report) {
 }
 
 // The ways that the solver leaves to the spheres.
-void ParticleSystem::take_targets() {
-  pushed_.assign(aiming_.targets().size(), 0);
-  for (std::size_t i = 0; i < aiming_.targets().size(); ++i) {
-    if (set_.fates()[i] != ParticleStatus::alive || set_.states[i].held) continue;
-    const Vec3 target = flushed(set_.states[i].position + displacements_[i]);
-    pushed_[i] = target != aiming_.targets()[i] ? 1 : 0;
-    aiming_.targets()[i] = target;
+void SphereContacts::take_targets(ParticleSet& set, std::span<Vec3> targets) {
+  pushed_.assign(targets.size(), 0);
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    if (set.fates()[i] != ParticleStatus::alive || set.states[i].held) continue;
+    const Vec3 target = flushed(set.states[i].position + displacements_[i]);
+    pushed_[i] = target != targets[i] ? 1 : 0;
+    targets[i] = target;
   }
 }
 
-void ParticleSystem::collide(double dt, bool moving) {
-  aiming_.aim(set_, dt, false);
-  weigh();
-  find_walls(dt, moving);
+CollisionCounts SphereContacts::collide(ParticleSet& set, std::span<Vec3> targets, double dt, bool moving,
+                                        const Vec3& acceleration) {
+  weigh(set);
+  find_walls(set, dt, moving);
   const CollisionOptions& c = *options_.collisions;
   SolverOptions solver;
   solver.dt = dt;
@@ -164,20 +179,34 @@ void ParticleSystem::collide(double dt, bool moving) {
   solver.iterations = c.iterations;
   solver.position_iterations = c.position_iterations;
   solver.resting_speed = 2.0 * norm(options_.gravity) * dt;
-  solver.acceleration = aiming_.acceleration(dt).value;
+  solver.acceleration = acceleration;
   const CellComplex& complex = environment_.complex();
-  const CollidingSpheres spheres = {set_.states.states(), ids(),          met_radii_,      inverse_masses_, clearances_,
-                                    set_.velocities(),    displacements_, options_.gravity};
+  const CollidingSpheres spheres = {set.states.states(), set.table[set.table.id], met_radii_,     inverse_masses_,
+                                    clearances_,         set.velocities(),        displacements_, options_.gravity};
+  CollisionCounts counts;
   if (meets_bodies()) {
-    last_.collisions += body_collider_.collide(complex, spheres, walls_, *bodies_, solver, environment_.threads());
+    counts = body_collider_.collide(complex, spheres, walls_, *bodies_, solver, environment_.threads());
     collider_.solver().set_cached_impulses({});
-    note_contacts(body_collider_.new_walls(), dt);
+    note_contacts(set, targets, body_collider_.new_walls(), dt);
   } else {
-    last_.collisions += collider_.collide(complex, spheres, walls_, solver, environment_.threads());
+    counts = collider_.collide(complex, spheres, walls_, solver, environment_.threads());
     body_collider_.solver().set_cached_impulses({});
-    note_contacts(collider_.new_walls(), dt);
+    note_contacts(set, targets, collider_.new_walls(), dt);
   }
-  take_targets();
+  take_targets(set, targets);
+  return counts;
+}
+
+void SphereContacts::save(ParticleSystemState& state) const {
+  const auto impulses =
+      meets_bodies() ? body_collider_.solver().cached_impulses() : collider_.solver().cached_impulses();
+  state.impulses.assign(impulses.begin(), impulses.end());
+}
+
+void SphereContacts::restore(const ParticleSystemState& state) {
+  clear_.clear();
+  body_collider_.solver().set_cached_impulses(state.impulses);  // the one that continues drops the other's
+  collider_.solver().set_cached_impulses(state.impulses);
 }
 
 }  // namespace dartcast
