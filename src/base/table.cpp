@@ -25,14 +25,6 @@ void Table::append(const Table& other, std::size_t row) {
   ++rows_;
 }
 
-void Table::append(const Table& other) {
-  for (std::size_t k = 0; k < columns_.size(); ++k) {
-    const std::vector<std::byte>& theirs = other.columns_[k].bytes;
-    columns_[k].bytes.insert(columns_[k].bytes.end(), theirs.begin(), theirs.end());
-  }
-  rows_ += other.rows_;
-}
-
 void Table::append(ByteReader& in) {
   for (Values& c : columns_) {
     const std::span<const std::byte> value = in.take_bytes(c.width);

@@ -46,12 +46,22 @@ class Table {
     const std::vector<std::byte>& bytes = columns_[column.number].bytes;
     return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
   }
+  /// The values of one row.
+  template <class T>
+  [[nodiscard]] std::span<T> row(Column<T> column, std::size_t row) {
+    const std::size_t width = columns_[column.number].width / sizeof(T);
+    return (*this)[column].subspan(row * width, width);
+  }
+  template <class T>
+  [[nodiscard]] std::span<const T> row(Column<T> column, std::size_t row) const {
+    const std::size_t width = columns_[column.number].width / sizeof(T);
+    return (*this)[column].subspan(row * width, width);
+  }
 
   /// Adds rows of zeros.
   void append_zeros(std::size_t count);
-  /// Adds a row of a table, or all. Precondition: it has these columns; it may have others behind them.
+  /// Adds a row of another table. Precondition: that one has these columns; it may have others behind them.
   void append(const Table& other, std::size_t row);
-  void append(const Table& other);
   /// Adds a row that pack() has written.
   void append(ByteReader& in);
   void pack(std::size_t row, ByteWriter& out) const;

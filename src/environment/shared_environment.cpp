@@ -36,10 +36,10 @@ SharedParticles::~SharedParticles() = default;
 
 std::span<const std::uint64_t> SharedParticles::ids() const { return std::as_const(*beside_)[beside_->id]; }
 std::span<double> SharedParticles::user_data(std::size_t particle) {
-  return (*beside_)[beside_->user_data].subspan(particle * width_, width_);
+  return beside_->row(beside_->user_data, particle);
 }
 std::span<const double> SharedParticles::user_data(std::size_t particle) const {
-  return std::as_const(*beside_)[beside_->user_data].subspan(particle * width_, width_);
+  return std::as_const(*beside_).row(beside_->user_data, particle);
 }
 
 struct SharedEnvironment::Members {

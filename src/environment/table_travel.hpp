@@ -1,7 +1,9 @@
 // The rows of a table go along with particles that go to other ranks. Not installed.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -10,12 +12,17 @@
 
 namespace dartcast {
 
-class TableTravel : public TravelData {
+class TableTravel final : public TravelData {
  public:
-  /// Row i is that of particle i.
-  explicit TableTravel(Table& table) : table_(table) {}
+  /// Row i is that of particle i. `counts`: the column with the number of its contacts.
+  explicit TableTravel(Table& table, std::optional<Column<std::uint32_t>> counts = {})
+      : table_(table), counts_(counts) {}
 
-  [[nodiscard]] std::string leave(std::uint32_t particle, std::uint32_t /*contacts*/) const override {
+  [[nodiscard]] std::string leave(std::uint32_t particle, std::uint32_t contacts) const override {
+    if (counts_) {  // the row that stays is removed after the step
+      std::uint32_t& count = table_[*counts_][particle];
+      count += std::min(contacts, UINT32_MAX - count);
+    }
     ByteWriter out;
     table_.pack(particle, out);
     return out.bytes();
@@ -27,6 +34,7 @@ class TableTravel : public TravelData {
 
  private:
   Table& table_;
+  std::optional<Column<std::uint32_t>> counts_;
 };
 
 }  // namespace dartcast

@@ -106,7 +106,7 @@ void balance(Simulation::Parts& parts) {
   Ranks& ranks = *parts.particles.options().ranks;
   const MeshPart& part = *parts.part_mesh;
   const PlacesInMesh places(part.mesh);
-  const std::vector<std::uint64_t> weights = weights_of(part, parts.particles.particles(), places);
+  const std::vector<std::uint64_t> weights = weights_of(part, parts.particles.set().states, places);
   const std::vector<std::uint64_t> now = loads(weights, part.owners, ranks);
   if (!is_uneven(now)) return;
   std::vector<std::uint32_t> next = divided(part, weights, ranks);
@@ -117,6 +117,7 @@ void balance(Simulation::Parts& parts) {
   parts.part->change(moved);
   *parts.part_mesh = std::move(moved);
   furnish(parts, *parts.spread_scene, parts.part_mesh->mesh, parts.part_mesh->points);
+  parts.inlets.change_part(parts.particles.sampled_part());
   parts.motion.stand_at(parts.motion.steps());
   parts.particles.take_over(ranks.exchange(leaving));
   ++parts.balanced;

@@ -1,12 +1,34 @@
-// What happens to states and rows alike.
+// Operations on states and rows alike.
 #include "simulation/particle_set.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <vector>
 
 #include "base/put_in_order.hpp"
+#include "dartcast/error.hpp"
 
 namespace dartcast {
+
+void check(const NewParticle& particle, const Environment& environment, const SimulationOptions& options,
+           const char* whose, std::size_t number) {
+  const auto fail = [&](const char* what, const auto&... values) {
+    throw InvalidArgument(fmt::format("simulation: {} ", fmt::format(fmt::runtime(whose), number)) +
+                          fmt::format(fmt::runtime(what), values...));
+  };
+  const auto& [v, radius, numbers] = particle;
+  if (!is_finite(v)) fail("velocity must be finite");
+  if (environment.map().dimension() == 2 && v.z != 0.0)
+    fail("velocity is ({}, {}, {}): in the plane its z must be 0", v.x, v.y, v.z);
+  if (!is_radius(radius)) fail("radius is {}: it must be between 0 and 2^100", radius);
+  if (radius > 0.0 && options.wall_motion == WallMotion::simultaneous)
+    fail("radius is {}: points alone move at the same time as the walls: leave it out, or take the wall motion carried",
+         radius);
+  if (!numbers.empty() && numbers.size() != options.user_data.size())
+    throw InvalidArgument(fmt::format("simulation: {} numbers of user data for a particle; the options name {}",
+                                      numbers.size(), options.user_data.size()));
+}
 
 void ParticleSet::complete(std::uint64_t id, const NewParticle& particle) {
   const std::size_t i = table.rows();

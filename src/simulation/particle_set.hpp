@@ -5,9 +5,8 @@
 #include <cstdint>
 #include <span>
 
-#include "dartcast/environment.hpp"
-#include "environment/addition.hpp"
-#include "simulation/particle_table.hpp"
+#include "base/table.hpp"
+#include "dartcast/simulation.hpp"
 
 namespace dartcast {
 
@@ -15,6 +14,30 @@ namespace dartcast {
 inline bool leaves(ParticleStatus status) {
   return status == ParticleStatus::absorbed || status == ParticleStatus::escaped;
 }
+
+/// The columns beside the states of particles. A new particle is alive, and has zeros.
+struct ParticleTable : Table {
+  /// `width`: numbers of user data.
+  explicit ParticleTable(std::size_t width = 0) : user_data(add_column<double>(width)) {}
+
+  Column<std::uint64_t> id = add_column<std::uint64_t>();
+  Column<Vec3> velocity = add_column<Vec3>();
+  Column<ParticleStatus> fate = add_column<ParticleStatus>();
+  Column<std::uint32_t> contact_count = add_column<std::uint32_t>();
+  Column<double> radius = add_column<double>();
+  Column<std::uint8_t> held = add_column<std::uint8_t>();  ///< in the last step
+  Column<double> user_data;
+};
+static_assert(ParticleStatus{} == ParticleStatus::alive);
+
+/// The table of a checkpoint has the states, too. Cells are those of the whole environment.
+struct SavedParticles : ParticleTable {
+  explicit SavedParticles(const ParticleTable& table = ParticleTable())
+      : ParticleTable(table), state(add_column<ParticleState>()), held_weights(add_column<Weights>()) {}
+
+  Column<ParticleState> state;
+  Column<Weights> held_weights;
+};
 
 /// The motion that a particle starts with, and its user's numbers; none of these: zeros.
 struct NewParticle {
@@ -32,10 +55,12 @@ struct ParticleSet {
   std::uint64_t next_id = 0;
   std::size_t spheres = 0;  ///< of a radius above 0
 
+  [[nodiscard]] std::span<const std::uint64_t> ids() const { return table[table.id]; }
   [[nodiscard]] std::span<Vec3> velocities() { return table[table.velocity]; }
+  [[nodiscard]] std::span<const Vec3> velocities() const { return table[table.velocity]; }
   [[nodiscard]] std::span<ParticleStatus> fates() { return table[table.fate]; }
-  [[nodiscard]] std::span<std::uint32_t> contact_counts() { return table[table.contact_count]; }
-  [[nodiscard]] std::span<std::uint8_t> held() { return table[table.held]; }
+  [[nodiscard]] std::span<const ParticleStatus> fates() const { return table[table.fate]; }
+  [[nodiscard]] std::span<const double> radii() const { return table[table.radius]; }
 
   /// Adds the row of the next state that has none.
   void complete(std::uint64_t id, const NewParticle& particle);
@@ -45,34 +70,25 @@ struct ParticleSet {
   void remove_rows(std::span<const std::uint8_t> marks);
   void count_spheres();
   void put_in_order_of_ids();
+  /// Calls add(), and undoes all that it has added where it throws.
+  template <class Add>
+  void enlarge(Add&& add) {
+    const std::size_t rows = table.rows();
+    const std::uint64_t next = next_id;
+    try {
+      add();
+    } catch (...) {
+      states.truncate(rows);
+      table.truncate(rows);
+      next_id = next;
+      count_spheres();
+      throw;
+    }
+  }
 };
 
-/// Undoes an addition to a set where an exception ends it.
-class SetAddition {
- public:
-  explicit SetAddition(ParticleSet& set)
-      : set_(set), states_(set.states), before_(set.table.rows()), next_id_(set.next_id), spheres_(set.spheres) {}
-  SetAddition(const SetAddition&) = delete;
-  SetAddition& operator=(const SetAddition&) = delete;
-  ~SetAddition() {
-    if (kept_) return;
-    set_.table.truncate(before_);
-    set_.next_id = next_id_;
-    set_.spheres = spheres_;
-  }
-  /// The addition is done.
-  void keep() {
-    states_.keep();
-    kept_ = true;
-  }
-
- private:
-  ParticleSet& set_;
-  Addition states_;
-  std::size_t before_;
-  std::uint64_t next_id_;
-  std::size_t spheres_;
-  bool kept_ = false;
-};
+/// Throws InvalidArgument where a particle cannot start so. `whose`: "particle {}'s", with this number.
+void check(const NewParticle& particle, const Environment& environment, const SimulationOptions& options,
+           const char* whose, std::size_t number = 0);
 
 }  // namespace dartcast

@@ -1,5 +1,4 @@
-// A step of the particles: injection, motion of the vertices, forces, the walk, and the removal of particles that
-// leave.
+// A step of the particles: motion of the vertices, forces, the walk, and the removal of particles that leave. Edits.
 #include "simulation/particle_system.hpp"
 
 #include <fmt/format.h>
@@ -102,7 +101,6 @@ ParticleSystem::ParticleSystem(Environment& environment, MovingVertices& motion,
     : environment_(environment),
       motion_(motion),
       options_(options),
-      share_(options.ranks),
       responses_(responses_of(options, environment.map())),
       set_(options.user_data.size()),
       aiming_(environment, motion, options_),
@@ -115,24 +113,20 @@ ParticleSystem::ParticleSystem(Environment& environment, MovingVertices& motion,
 }
 
 // Phases, in order:
-//  1. inlets inject;
+//  1. inlets have injected;
 //  2. vertices move (with collisions: in phase 3, after the spheres' impulses);
 //  3. for each segment of the way: velocities change, targets are set, particles walk and respond at walls;
 //  4. contacts are counted, and those absorbed or escaped leave.
 void ParticleSystem::step(double /*begin*/) {
-  last_ = {};
-  last_.duration = options_.dt;
-  last_.absorbed = std::exchange(absorbed_between_, 0);
-  inject();
-  if (after_injection_) after_injection_();
+  std::vector<std::uint8_t> departed;  // to other ranks; empty: none
   if (!collides()) move_vertices();
-  for (unsigned segment = 0; segment < options_.substeps; ++segment) advance_segment(segment);
+  for (unsigned segment = 0; segment < options_.substeps; ++segment) advance_segment(segment, departed);
   const ScopeTimer timer(totals_.seconds_respond);
   totals_.counters += last_.report.counters;
   totals_.collisions += last_.collisions;
   count_contacts();
   mark_held();
-  remove_gone();
+  remove_gone(departed);
   motion_.count_step();
 }
 
@@ -142,10 +136,10 @@ void ParticleSystem::move_vertices() {
   motion_.move();
 }
 
-void ParticleSystem::advance_segment(unsigned segment) {
+void ParticleSystem::advance_segment(unsigned segment, std::vector<std::uint8_t>& departed) {
   const double dt = options_.dt / options_.substeps;
   const bool moving = motion_.deforms() && segment == 0;
-  aiming_.set_times(time() + segment * dt, dt);
+  aiming_.set_times(motion_.time() + segment * dt, dt);
   if (collides()) {
     {
       const ScopeTimer timer(totals_.seconds_collide);
@@ -164,7 +158,7 @@ void ParticleSystem::advance_segment(unsigned segment) {
   const ContactCallback respond = response(dt);
   if (set_.spheres == 0) {
     StepReport report =
-        part_ != nullptr ? advance_in_part(aiming_.acceleration(dt))
+        part_ != nullptr ? advance_in_part(aiming_.acceleration(dt), departed)
         : options_.wall_motion == WallMotion::simultaneous
             ? simultaneous_stepper_.advance(environment_, set_.states, aiming_.targets(), respond, options_.step)
             : environment_.advance(set_.states, aiming_.targets(), respond, options_.step);
@@ -174,7 +168,7 @@ void ParticleSystem::advance_segment(unsigned segment) {
   }
   const std::span<const double> clearances = collides() ? contacts_.clearances() : std::span<const double>();
   SphereReport report =
-      stepper_.advance(environment_, set_.states, radii(), aiming_.targets(), respond, options_.step, clearances);
+      stepper_.advance(environment_, set_.states, set_.radii(), aiming_.targets(), respond, options_.step, clearances);
   hold_stopped(report.step, responses_, set_.velocities(), set_.fates(), options_.dt, aiming_.acceleration(dt));
   contacts_.add_to(report.step);
   append_segment(last_.report, std::move(report.step), segment, options_.substeps);
@@ -196,11 +190,12 @@ ContactCallback ParticleSystem::response(double dt) {
 
 void ParticleSystem::count_contacts() {
   const ContactList& list = last_.report.contacts;
+  const std::span<std::uint32_t> counts = set_.table[set_.table.contact_count];
   last_.contact_ids.reserve(list.contacts.size());
   last_.contact_sources.reserve(list.contacts.size());
   for (const Contact& c : list.contacts) {
-    last_.contact_ids.push_back(ids()[c.particle]);
-    set_.contact_counts()[c.particle] += set_.contact_counts()[c.particle] == UINT32_MAX ? 0 : 1;
+    last_.contact_ids.push_back(set_.ids()[c.particle]);
+    counts[c.particle] += counts[c.particle] == UINT32_MAX ? 0 : 1;
     const WallHit& wall = list.walls_of(c).front();
     last_.contact_sources.push_back(environment_.map().source(wall.face.cell));
     ++totals_.contacts_by_patch[wall.patch.value];
@@ -208,32 +203,60 @@ void ParticleSystem::count_contacts() {
 }
 
 void ParticleSystem::mark_held() {
-  std::fill(set_.held().begin(), set_.held().end(), std::uint8_t{0});  // those that left are not removed yet
-  for (const HeldParticle& h : last_.report.held) set_.held()[h.particle] = 1;
+  const std::span<std::uint8_t> held = set_.table[set_.table.held];
+  std::fill(held.begin(), held.end(), std::uint8_t{0});  // those that left are not removed yet
+  for (const HeldParticle& h : last_.report.held) held[h.particle] = 1;
 }
 
-void ParticleSystem::remove_gone() {
+void ParticleSystem::remove_gone(std::span<const std::uint8_t> departed) {
   std::vector<std::uint8_t> gone(set_.states.size(), 0);
+  const std::span<const std::uint64_t> ids = set_.ids();
+  const std::span<const ParticleStatus> fates = set_.fates();
   std::uint64_t absorbed = 0;
   const std::vector<Contact>& contacts = last_.report.contacts.contacts;
   std::uint32_t next = 0;  // the first contact of a particle behind the last one that left
   for (std::size_t i = 0; i < gone.size(); ++i) {
-    gone[i] = departed_.empty() ? 0 : departed_[i];
-    if (!leaves(set_.fates()[i]) || gone[i] != 0) continue;
+    gone[i] = departed.empty() ? 0 : departed[i];
+    if (!leaves(fates[i]) || gone[i] != 0) continue;
     gone[i] = 1;
     while (next < contacts.size() && contacts[next].particle <= i) ++next;
-    last_.left.push_back({ids()[i], set_.fates()[i], set_.states[i].position, next - 1});
-    ++(set_.fates()[i] == ParticleStatus::absorbed ? absorbed : last_.escaped);
-    gone_.add(ids()[i], whole_state(i), set_.velocities()[i], static_cast<std::uint64_t>(set_.fates()[i]));
+    last_.left.push_back({ids[i], fates[i], set_.states[i].position, next - 1});
+    ++(fates[i] == ParticleStatus::absorbed ? absorbed : last_.escaped);
+    gone_.add(ids[i], whole_state(i), set_.velocities()[i], static_cast<std::uint64_t>(fates[i]));
   }
   last_.absorbed += absorbed;
   totals_.absorbed += absorbed;
   totals_.escaped += last_.escaped;
-  if (absorbed + last_.escaped == 0 && departed_.empty()) return;
+  if (absorbed + last_.escaped == 0 && departed.empty()) return;
   set_.remove(gone);
   contacts_.forget_walls();
-  departed_.clear();
   if (part_ != nullptr) set_.put_in_order_of_ids();
+}
+
+void ParticleSystem::update_after_edit(const ComplexEditReport& edit, OrphanPolicy orphaned) {
+  const std::vector<ParticleState> before(set_.states.states().begin(), set_.states.states().end());
+  contacts_.forget_walls();
+  edited_.report = environment_.update_after_edit(set_.states, orphaned);
+  remove_absorbed(edited_.report, before);
+  aiming_.update_after_edit(edit);
+}
+
+void ParticleSystem::remove_absorbed(const UpdateReport& report, std::span<const ParticleState> before) {
+  std::vector<std::uint8_t> marks(set_.ids().size(), 0);
+  std::uint64_t absorbed = 0;
+  edited_.absorbed.clear();
+  for (const OrphanedParticle& p : report.orphaned) {
+    if (p.outcome != OrphanPolicy::absorb) continue;
+    marks[p.particle] = 1;
+    ++absorbed;
+    edited_.absorbed.push_back(set_.ids()[p.particle]);
+    gone_.add(set_.ids()[p.particle], before[p.particle], set_.velocities()[p.particle],
+              static_cast<std::uint64_t>(ParticleStatus::absorbed));
+  }
+  if (absorbed == 0) return;
+  totals_.absorbed += absorbed;
+  edited_.since_step += absorbed;
+  set_.remove_rows(marks);
 }
 
 }  // namespace dartcast

@@ -26,7 +26,7 @@ void ParticleSystem::restore(const SimulationState& state) {
   if (saved.totals.contacts_by_patch.size() != totals_.contacts_by_patch.size())
     throw InvalidArgument(
         "simulation: the checkpoint is of an environment with other patches: use the mesh that it was saved with");
-  if (saved.table[saved.table.user_data].size() != saved.table.rows() * width())
+  if (saved.table[saved.table.user_data].size() != saved.table.rows() * options_.user_data.size())
     throw InvalidArgument("simulation: the checkpoint has other user data: give the options that it was saved with");
   put_in_place_of_all(saved.table);
   contacts_.restore(saved);
@@ -36,13 +36,13 @@ void ParticleSystem::restore(const SimulationState& state) {
   totals_.injected = saved.totals.injected;
   totals_.contacts_by_patch.resize(saved.totals.contacts_by_patch.size());
   gone_ = {};
-  if (!share_.is_first()) return;  // sums over all ranks have them once
+  if (!share().is_first()) return;  // sums over all ranks have them once
   totals_ = saved.totals;
   gone_ = saved.gone;
 }
 
 bool ParticleSystem::is_mine(std::uint64_t id, const ParticleState& state) const {
-  if (part_ == nullptr) return share_.holds(id);
+  if (part_ == nullptr) return share().holds(id);
   const Cell here = part_->cells().here(state.cell);
   return here.valid() && part_->cells().is_own(here);
 }
@@ -72,9 +72,8 @@ Audit ParticleSystem::audit() const {
 
 StateHash ParticleSystem::state_hash() const {
   StateHash hash = gone_;
-  for (std::size_t i = 0; i < ids().size(); ++i) {
-    hash.add(ids()[i], whole_state(i), velocities()[i], static_cast<std::uint64_t>(fates()[i]));
-  }
+  for (std::size_t i = 0; i < set_.states.size(); ++i)
+    hash.add(set_.ids()[i], whole_state(i), set_.velocities()[i], static_cast<std::uint64_t>(set_.fates()[i]));
   return hash;
 }
 

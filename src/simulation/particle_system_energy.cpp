@@ -26,8 +26,8 @@ SimulationEnergy ParticleSystem::energy() const {
   parallel_for(set_.states.size(), energy_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
     ExactEnergy& part = parts[begin / energy_grain];
     for (std::size_t i = begin; i < end; ++i) {
-      const double m = options_.collisions ? contacts_.mass(radii()[i]) : 1.0;
-      part.kinetic.add(0.5 * m * dot(velocities()[i], velocities()[i]));
+      const double m = options_.collisions ? contacts_.mass(set_.radii()[i]) : 1.0;
+      part.kinetic.add(0.5 * m * dot(set_.velocities()[i], set_.velocities()[i]));
       part.potential.add(-(m * dot(options_.gravity, set_.states[i].position)));
     }
   });

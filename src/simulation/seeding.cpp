@@ -306,4 +306,60 @@ std::optional<Sample> PatchSampler::sample(const CellComplex& complex, KeyedRand
   return Sample{t.simplex, on_face + (v[t.facet] - on_face) * 0x1p-6};
 }
 
+namespace {
+
+struct Waiting {
+  std::uint64_t id;
+  KeyedRandom random;
+};
+
+std::vector<std::uint64_t> of_all_ranks(const std::vector<std::uint64_t>& ids, Ranks& ranks) {
+  ByteWriter out;
+  out.put(ids);
+  std::vector<std::uint64_t> all;
+  for (const std::string& b : ranks.exchange(std::vector<std::string>(ranks.size(), out.bytes()))) {
+    const auto list = ByteReader(b).take_list<std::uint64_t>();
+    all.insert(all.end(), list.begin(), list.end());
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+}  // namespace
+
+// Sampled points are rounded. One that fell out of its simplex is drawn again, with the next numbers of the same id. Where
+// ranks have an environment's parts, all draw for each particle, and the one whose cell it is adds it.
+template <class Sampler>
+std::vector<std::uint64_t> place(const Placing& placing, Particles& particles, const Sampler& sampler,
+                                 std::uint64_t first, std::uint64_t count) {
+  constexpr int max_tries = 1000;
+  Environment& environment = placing.environment;
+  std::vector<Waiting> waiting;
+  for (std::uint64_t id = first; id < first + count; ++id) {
+    if (placing.part || placing.share.holds(id))
+      waiting.push_back({id, KeyedRandom(placing.seed, RandomPurpose::place, id)});
+  }
+  std::vector<std::uint64_t> placed;
+  for (int tries = 0; !waiting.empty(); ++tries) {
+    if (tries == max_tries)
+      throw InvalidArgument(
+          "simulation: random points fall outside the free cells again and again: their cells are too thin or not "
+          "valid");
+    std::vector<std::uint64_t> failed;
+    for (Waiting& w : waiting) {
+      const std::optional<Sample> s = sampler.sample(environment.complex(), w.random);
+      if (!s) continue;
+      (environment.add(particles, s->simplex, flushed(s->position)) ? placed : failed).push_back(w.id);
+    }
+    if (placing.part) failed = of_all_ranks(failed, placing.part->ranks);
+    std::erase_if(waiting, [&](const Waiting& w) { return !std::binary_search(failed.begin(), failed.end(), w.id); });
+  }
+  return placed;
+}
+
+template std::vector<std::uint64_t> place(const Placing&, Particles&, const VolumeSampler&, std::uint64_t,
+                                          std::uint64_t);
+template std::vector<std::uint64_t> place(const Placing&, Particles&, const PatchSampler&, std::uint64_t,
+                                          std::uint64_t);
+
 }  // namespace dartcast

@@ -10,8 +10,10 @@
 #include "base/parallel.hpp"
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/complex_edit.hpp"
+#include "dartcast/environment.hpp"
 #include "dartcast/ranks.hpp"
 #include "parts/part_cells.hpp"
+#include "simulation/particle_share.hpp"
 
 namespace dartcast {
 
@@ -110,5 +112,18 @@ class PatchSampler {
   std::vector<Triangle> triangles_;
   SizeTable areas_;
 };
+
+struct Placing {
+  Environment& environment;
+  ParticleShare share;              ///< of a whole environment
+  std::optional<SampledPart> part;  ///< then the place decides whose a particle is
+  std::uint64_t seed;
+};
+
+/// Adds those of these particles that are this rank's. Returns their ids: those that came late stand behind the others.
+/// Throws InvalidArgument where points fall outside again and again. Collective where there is a part.
+template <class Sampler>
+std::vector<std::uint64_t> place(const Placing& placing, Particles& particles, const Sampler& sampler,
+                                 std::uint64_t first, std::uint64_t count);
 
 }  // namespace dartcast

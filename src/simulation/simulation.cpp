@@ -38,6 +38,8 @@ const SimulationStep& Simulation::step() {
   parts_->motion.load_step();
   parts_->particles.aiming().load_step();
   parts_->events.before_step();
+  parts_->particles.inject(parts_->inlets);
+  parts_->statistics.note_start();
   for (SimulationComponent* component : parts_->components) {
     const ScopeTimer timer(parts_->clock_of(component));
     component->step(begin);
@@ -53,13 +55,14 @@ SimulationEdit Simulation::edit(const std::function<void(ComplexEdit&)>& make, O
   SimulationEdit done;
   done.edit = parts_->environment.edit(make);
   parts_->motion.update_after_edit(done.edit);
+  parts_->inlets.update_after_edit(done.edit);
   for (SimulationComponent* component : parts_->components) {
     if (parts_->replaying && component != &parts_->particles) continue;
     component->update_after_edit(done.edit, orphaned);
   }
   parts_->events.after_edit();
   if (parts_->after_edit) parts_->after_edit(parts_->environment);
-  done.particles = parts_->particles.last_update();
+  done.particles = parts_->particles.edited().report;
   return done;
 }
 
@@ -147,16 +150,16 @@ void Simulation::pull(std::span<const Vec3> displacement, double duration) {
 void Simulation::add_inlet(Patch patch, double rate, const Vec3& velocity, double radius,
                            std::span<const double> user_data) {
   parts_->spread_scene.reset();
-  parts_->particles.add_inlet(patch, rate, velocity, radius, user_data);
+  parts_->inlets.add(patch, rate, {velocity, radius, user_data}, parts_->particles.sampled_part());
 }
 
 std::vector<AddResult> Simulation::add(std::span<const Vec3> positions, const Vec3& velocity, double radius,
                                        std::span<const double> user_data) {
-  return parts_->particles.add(positions, velocity, radius, user_data);
+  return parts_->particles.add(positions, {velocity, radius, user_data});
 }
 
 std::vector<AddResult> Simulation::add(std::initializer_list<Vec3> positions, const Vec3& velocity, double radius) {
-  return parts_->particles.add({positions.begin(), positions.size()}, velocity, radius, {});
+  return parts_->particles.add({positions.begin(), positions.size()}, {velocity, radius, {}});
 }
 
 std::vector<AddResult> Simulation::add(std::span<const Vec3> positions, std::span<const Vec3> velocities,
@@ -165,7 +168,7 @@ std::vector<AddResult> Simulation::add(std::span<const Vec3> positions, std::spa
 }
 
 void Simulation::add_random(std::size_t count, const Vec3& velocity, double radius, std::span<const double> user_data) {
-  parts_->particles.add_random(count, velocity, radius, user_data);
+  parts_->particles.add_random(count, {velocity, radius, user_data});
 }
 
 namespace {
@@ -205,17 +208,27 @@ std::uint64_t Simulation::steps() const { return parts_->motion.steps(); }
 const Environment& Simulation::environment() const { return parts_->environment; }
 void Simulation::set_replay_hook(ReplayHook hook) { parts_->environment.set_replay_hook(std::move(hook)); }
 bool Simulation::deforms() const { return parts_->motion.deforms(); }
-const Particles& Simulation::particles() const { return parts_->particles.particles(); }
-std::span<const std::uint64_t> Simulation::ids() const { return parts_->particles.ids(); }
-std::span<const Vec3> Simulation::velocities() const { return parts_->particles.velocities(); }
-std::span<const ParticleStatus> Simulation::fates() const { return parts_->particles.fates(); }
-std::span<const std::uint32_t> Simulation::contact_counts() const { return parts_->particles.contact_counts(); }
-std::span<const double> Simulation::radii() const { return parts_->particles.radii(); }
-std::span<const std::uint8_t> Simulation::held() const { return parts_->particles.held(); }
-std::span<const double> Simulation::user_data(std::size_t particle) const {
-  return std::as_const(parts_->particles).user_data(particle);
+const Particles& Simulation::particles() const { return parts_->particles.set().states; }
+std::span<const std::uint64_t> Simulation::ids() const { return parts_->particles.set().ids(); }
+std::span<const Vec3> Simulation::velocities() const { return parts_->particles.set().velocities(); }
+std::span<const ParticleStatus> Simulation::fates() const { return parts_->particles.set().fates(); }
+std::span<const std::uint32_t> Simulation::contact_counts() const {
+  const ParticleTable& table = parts_->particles.set().table;
+  return table[table.contact_count];
 }
-std::span<double> Simulation::user_data(std::size_t particle) { return parts_->particles.user_data(particle); }
+std::span<const double> Simulation::radii() const { return parts_->particles.set().radii(); }
+std::span<const std::uint8_t> Simulation::held() const {
+  const ParticleTable& table = parts_->particles.set().table;
+  return table[table.held];
+}
+std::span<const double> Simulation::user_data(std::size_t particle) const {
+  const ParticleTable& table = parts_->particles.set().table;
+  return table.row(table.user_data, particle);
+}
+std::span<double> Simulation::user_data(std::size_t particle) {
+  ParticleTable& table = parts_->particles.set().table;
+  return table.row(table.user_data, particle);
+}
 
 const Bodies* Simulation::bodies() const {
   const std::optional<Bodies>& bodies = std::as_const(parts_->bodies).bodies();

@@ -104,10 +104,9 @@ SimulationCheckpoint joined(std::span<const SimulationCheckpoint> parts) {
           fmt::format("joined: one checkpoint is of step {}, another of step {}: join those that the "
                       "ranks have saved after the same step",
                       all.particles.steps, p.steps));
-    if (all.particles.table.rows() == 0)
-      all.particles.table = p.table;  // without rows a file does not say how much user data they would have
-    else
-      all.particles.table.append(p.table);
+    // Without rows a file does not say how much user data they would have.
+    if (all.particles.table.rows() == 0) (all.particles.table = p.table).truncate(0);
+    for (std::size_t i = 0; i < p.table.rows(); ++i) all.particles.table.append(p.table, i);
     all.particles.gone += p.gone;
     add_sums(all.particles.totals, p.totals);
   }

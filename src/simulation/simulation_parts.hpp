@@ -11,6 +11,7 @@
 #include "simulation/bodies_component.hpp"
 #include "simulation/catheters_component.hpp"
 #include "simulation/event_scheduler.hpp"
+#include "simulation/inlets.hpp"
 #include "simulation/particle_system.hpp"
 #include "simulation/solids_component.hpp"
 #include "simulation/statistics_component.hpp"
@@ -24,6 +25,7 @@ struct Simulation::Parts {
         environment(used),
         motion(used, options.dt),
         particles(used, motion, options),
+        inlets(used, motion, particles.options()),
         solids(used, motion, options.dt),
         bodies(used, particles.options(), particles.responses()),
         catheters(used, options.dt),
@@ -48,6 +50,7 @@ struct Simulation::Parts {
   Environment& environment;
   MovingVertices motion;
   ParticleSystem particles;
+  Inlets inlets;
   SolidsComponent solids;
   BodiesComponent bodies;
   CathetersComponent catheters;

@@ -90,11 +90,11 @@ class ParticleSource {
   const ParticlesScene& scene_;
 };
 
-void add_inlets(ParticleSystem& particles, const Scene& scene) {
+void add_inlets(Simulation::Parts& parts, const Scene& scene) {
   for (const ParticlesScene& p : scene.particles) {
     if (const auto* inlet = std::get_if<InletParticles>(&p.source))
-      particles.add_inlet(particles.environment().map().patch(inlet->patch), inlet->rate, p.velocity, p.radius,
-                          p.user_data);
+      parts.inlets.add(parts.environment.map().patch(inlet->patch), inlet->rate, {p.velocity, p.radius, p.user_data},
+                       parts.particles.sampled_part());
   }
 }
 
@@ -127,7 +127,7 @@ void Simulation::make(const Scene& scene, Threads threads, Ranks* ranks, Partiti
   for (const BodyScene& body : scene.bodies) add(body);
   for (const CatheterScene& catheter : scene.catheters) add(catheter);
   for (const SolidScene& solid : scene.solids) add(solid);
-  add_inlets(parts_->particles, scene);
+  add_inlets(*parts_, scene);
 }
 
 Simulation::Simulation(const Scene& scene, Threads threads, Ranks* ranks, Partition partition) {

@@ -11,7 +11,7 @@
 #include "dartcast/solids.hpp"
 #include "dartcast/statistics.hpp"
 #include "dynamics/contact_solver.hpp"
-#include "simulation/particle_table.hpp"
+#include "simulation/particle_set.hpp"
 #include "simulation/rigid_pose.hpp"
 #include "simulation/start_times.hpp"
 

@@ -1,7 +1,7 @@
 // Keeps the statistics of a simulation up to date, step by step and edit by edit.
 //
 // Phases of a step, in order:
-//  1. after the injection, in the middle of the particles' step: positions and new particles are noted;
+//  1. after the injection: positions and new particles are noted;
 //  2. after the particles' step: crossings, residence times of those that left, points of pathlines are found;
 //  3. count() adds them and the hits to the totals.
 #include "simulation/statistics_component.hpp"
@@ -37,21 +37,18 @@ void StatisticsComponent::set_options(const StatisticsOptions& options) {
   statistics_.planes.resize(options.planes.size());
   if (options.residence) statistics_.left.resize(particles_.environment().map().patch_names().size());
   starts_ = {};
-  if (observes_motion())
-    particles_.set_after_injection([this] { note_start(); });
-  else
-    particles_.set_after_injection({});
 }
 
 void StatisticsComponent::note_start() {
+  if (!observes_motion()) return;
   const ScopeTimer timer(statistics_.seconds);
-  const std::span<const std::uint64_t> ids = particles_.ids();
-  const std::span<const Vec3> velocities = particles_.velocities();
+  const std::span<const std::uint64_t> ids = particles_.set().ids();
+  const std::span<const Vec3> velocities = particles_.set().velocities();
   ids_.assign(ids.begin(), ids.end());
-  before_ = positions_of(particles_.particles());
+  before_ = positions_of(particles_.set().states);
   first_new_ = static_cast<std::size_t>(std::lower_bound(ids.begin(), ids.end(), starts_.next_id()) - ids.begin());
   start_velocities_.assign(velocities.begin() + static_cast<std::ptrdiff_t>(first_new_), velocities.end());
-  starts_.add(particles_.next_id(), particles_.time());
+  starts_.add(particles_.set().next_id, particles_.motion().time());
 }
 
 void StatisticsComponent::step(double begin) {
@@ -85,7 +82,7 @@ void StatisticsComponent::set_found(std::vector<PlanePassage> passages, std::vec
 
 // Both lists of ids ascend. The particles that are in the first alone have left.
 void StatisticsComponent::find_ends() {
-  const std::span<const std::uint64_t> ids = particles_.ids();
+  const std::span<const std::uint64_t> ids = particles_.set().ids();
   auto left = particles_.last_step().left.begin();
   after_.resize(ids_.size());
   now_.resize(ids_.size());
@@ -93,7 +90,7 @@ void StatisticsComponent::find_ends() {
   for (std::size_t i = 0; i < ids_.size(); ++i) {
     const bool stays = next < ids.size() && ids[next] == ids_[i];
     now_[i] = stays ? next : left_the_scene;
-    after_[i] = stays ? particles_.particles()[next].position : left->position;
+    after_[i] = stays ? particles_.set().states[next].position : left->position;
     if (stays)
       ++next;
     else
@@ -144,7 +141,7 @@ void StatisticsComponent::add_path_points(double begin) {
     add_contacts(i, first, end, begin);
     first = end;
     if (now_[i] != left_the_scene)
-      points.push_back({ids_[i], particles_.time(), after_[i], particles_.velocities()[now_[i]], false});
+      points.push_back({ids_[i], particles_.motion().time(), after_[i], particles_.set().velocities()[now_[i]], false});
   }
 }
 
@@ -165,10 +162,10 @@ void StatisticsComponent::add_contacts(std::size_t i, std::size_t first, std::si
 void StatisticsComponent::update_after_edit(const ComplexEditReport& /*edit*/, OrphanPolicy /*orphaned*/) {
   if (options_.hits) statistics_.hits.update_after_edit(particles_.environment());
   if (!options_.residence) return;
-  starts_.add(particles_.next_id(), particles_.time());
+  starts_.add(particles_.set().next_id, particles_.motion().time());
   std::vector<Leaving> absorbed;
-  for (const std::uint64_t id : particles_.absorbed_by_edit())
-    absorbed.push_back({id, ParticleStatus::absorbed, {}, particles_.time() - starts_.of(id)});
+  for (const std::uint64_t id : particles_.edited().absorbed)
+    absorbed.push_back({id, ParticleStatus::absorbed, {}, particles_.motion().time() - starts_.of(id)});
   for (const Leaving& p : gathered_by_id(particles_.options().ranks, std::move(absorbed)))
     statistics_.absorbed_by_edits.add(p.age, particles_.options().dt);
 }

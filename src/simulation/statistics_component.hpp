@@ -23,7 +23,7 @@ struct Leaving {
 /// finds what has happened; count() adds that to the totals. In between the first rank gets what all have found.
 class StatisticsComponent final : public SimulationComponent {
  public:
-  explicit StatisticsComponent(ParticleSystem& particles) : particles_(particles) {}
+  explicit StatisticsComponent(const ParticleSystem& particles) : particles_(particles) {}
 
   /// Starts anew. Throws as Simulation::set_statistics().
   void set_options(const StatisticsOptions& options);
@@ -33,6 +33,8 @@ class StatisticsComponent final : public SimulationComponent {
   /// Throws InvalidArgument where the state is of a simulation with other statistics.
   void check(const SimulationState& state) const;
 
+  /// After the injection, before anything moves.
+  void note_start();
   void step(double begin) override;
   /// Adds what the last step has found to the totals.
   void count();
@@ -49,7 +51,6 @@ class StatisticsComponent final : public SimulationComponent {
   [[nodiscard]] bool observes_motion() const {
     return options_.residence || !options_.planes.empty() || options_.pathlines();
   }
-  void note_start();
   void find_ends();
   void find_passages(double begin);
   void find_leavings(double begin);
@@ -57,7 +58,7 @@ class StatisticsComponent final : public SimulationComponent {
   void add_contacts(std::size_t i, std::size_t first, std::size_t end, double begin);
   [[nodiscard]] bool has_pathline(std::uint64_t id) const;
 
-  ParticleSystem& particles_;
+  const ParticleSystem& particles_;
   StatisticsOptions options_;
   Statistics statistics_;
   StartTimes starts_;

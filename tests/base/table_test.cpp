@@ -77,9 +77,7 @@ class Pair {
   }
   void append() {
     const Rows copy = table_;
-    if (copy.rows() == 0 || copy.rows() > 40) return;
-    table_.append(copy);
-    rows_.insert(rows_.end(), rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(copy.rows()));
+    if (copy.rows() == 0) return;
     const std::size_t i = below(copy.rows());
     table_.append(copy, i);
     rows_.push_back(rows_[i]);

@@ -1,5 +1,5 @@
 // A column that nothing but this test knows goes along with its particles, whatever happens to them.
-#include "simulation/particle_table.hpp"
+#include "simulation/particle_set.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@
 #include "simulation/simulation_state.hpp"
 #include "support/thread_ranks.hpp"
 
-namespace dartcast::particle_table_test {
+namespace dartcast::particle_set_test {
 
 // A flow through a channel of cubes. All start in one half, so that ranks with a half of the cells move some.
 Scene channel(std::size_t count) {
@@ -63,7 +63,7 @@ class Marked {
 
  private:
   // The library changes tables through its own functions alone.
-  ParticleTable& table() { return const_cast<ParticleTable&>(simulation.parts().particles.table()); }
+  ParticleTable& table() { return const_cast<ParticleTable&>(simulation.parts().particles.set().table); }
   std::span<double> marks() { return table()[mark_]; }
   double number(std::size_t i) { return static_cast<double>(simulation.ids()[i] + 1); }
 
@@ -124,4 +124,4 @@ TEST(ParticleTable, JoinsANewColumnOfAllRanks) {
   alone.expect_marks();
 }
 
-}  // namespace dartcast::particle_table_test
+}  // namespace dartcast::particle_set_test
