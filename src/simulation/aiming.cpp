@@ -21,17 +21,21 @@ constexpr std::size_t tracer_grain = 256;
 
 }  // namespace
 
+Aiming::Aiming(const Environment& environment, Followers& followers, const MovingVertices& motion,
+               const SimulationOptions& options)
+    : environment_(environment), motion_(motion), options_(options) {
+  followers.add([this](const ComplexEditReport& edit, OrphanPolicy /*orphaned*/) {
+    if (field_) field_->update_after_edit(edit, environment_.complex());
+    if (force_) force_->update_after_edit(edit, environment_.complex());
+  });
+}
+
 void Aiming::load_step() {
   if (options_.integrator == Integrator::rk4 && !field_)
     throw InvalidArgument(
         "simulation: the integrator rk4 follows a velocity field, but there is none: call set_field()");
   if (field_) field_->hold(motion_.time(), motion_.time() + options_.dt);
   if (force_) force_->hold(motion_.time(), motion_.time() + options_.dt);
-}
-
-void Aiming::update_after_edit(const ComplexEditReport& edit) {
-  if (field_) field_->update_after_edit(edit, environment_.complex());
-  if (force_) force_->update_after_edit(edit, environment_.complex());
 }
 
 void Aiming::set_times(double begin, double duration) {

@@ -18,15 +18,14 @@ namespace dartcast {
 class Aiming {
  public:
   /// All outlive it.
-  Aiming(const Environment& environment, const MovingVertices& motion, const SimulationOptions& options)
-      : environment_(environment), motion_(motion), options_(options) {}
+  Aiming(const Environment& environment, Followers& followers, const MovingVertices& motion,
+         const SimulationOptions& options);
 
   void set_field(VelocityField field) { field_ = std::move(field); }
   void set_force(VectorField force) { force_ = std::move(force); }
   /// Reads what the next step needs of the fields' files, before that step changes anything. Throws as
   /// VectorField::hold(), and InvalidArgument where an integrator has no field to follow.
   void load_step();
-  void update_after_edit(const ComplexEditReport& edit);
 
   /// Brings the fields to the times of a segment of a step.
   void set_times(double begin, double duration);

@@ -40,8 +40,11 @@ void sum_particles(EventReport& report, Ranks* ranks) {
 
 }  // namespace
 
-EventScheduler::EventScheduler(Simulation& simulation, const Environment& environment, double dt)
-    : simulation_(simulation), environment_(environment), dt_(dt) {
+EventScheduler::EventScheduler(const Environment& environment, Followers& followers, double dt)
+    : environment_(environment), dt_(dt) {
+  followers.add([this](const ComplexEditReport& edit, OrphanPolicy /*orphaned*/) {
+    subdivision_.update_after_edit(environment_.map(), edit.map.added);
+  });
   const CombinatorialMap& map = environment.map();
   for (const Cell c : map.cells()) {
     if (map.is_free(c)) continue;
@@ -85,30 +88,30 @@ std::uint64_t EventScheduler::step_of(const Event& event) const {
   return static_cast<std::uint64_t>(std::min(never, std::ceil(steps * (1.0 - rounding))));
 }
 
-void EventScheduler::before_step() {
-  for (; next_ < events_.size() && step_of(events_[next_]) <= simulation_.steps(); ++next_) {
-    const std::uint64_t in_opened = count_in_opened();
-    log_.events.push_back(carry_out(next_));
+void EventScheduler::before_step(Simulation& simulation) {
+  for (; next_ < events_.size() && step_of(events_[next_]) <= simulation.steps(); ++next_) {
+    const std::uint64_t in_opened = count_in_opened(simulation);
+    log_.events.push_back(carry_out(simulation, next_));
     log_.events.back().particles_in_opened = in_opened;
-    log_.changes.push_back({simulation_.steps(), next_, 0});
+    log_.changes.push_back({simulation.steps(), next_, 0});
   }
 }
 
-EventReport EventScheduler::carry_out(std::uint32_t number) {
+EventReport EventScheduler::carry_out(Simulation& simulation, std::uint32_t number) {
   const Event& event = events_[number];
   const auto named = [&](const Error& e) {
     return Error(fmt::format("event {} ({} at {} s): {}", number + 1, name_of(kind_of(event)), event.at, e.what()));
   };
   try {
-    EventReport report = apply(simulation_, event);
-    sum_particles(report, simulation_.options().ranks);
+    EventReport report = apply(simulation, event);
+    sum_particles(report, simulation.options().ranks);
     return report;
   } catch (const EditRefused& e) {
     if (event.required) throw named(e);
     EventReport report;
     report.kind = kind_of(event);
-    report.step = simulation_.steps();
-    report.time = simulation_.time();
+    report.step = simulation.steps();
+    report.time = simulation.time();
     report.refused = e.what();
     return report;
   } catch (const Error& e) {
@@ -116,21 +119,21 @@ EventReport EventScheduler::carry_out(std::uint32_t number) {
   }
 }
 
-void EventScheduler::after_step() {
-  if (remeshing_.every > 0 && simulation_.steps() % remeshing_.every == 0) {
-    const RepairReport report = remesh();
+void EventScheduler::after_step(Simulation& simulation) {
+  if (remeshing_.every > 0 && simulation.steps() % remeshing_.every == 0) {
+    const RepairReport report = remesh(simulation);
     log_.mended += report.mended.size();
     log_.left = report.left.size();
-    if (!report.mended.empty()) log_.changes.push_back({simulation_.steps(), EventLog::Change::remeshing, 0});
+    if (!report.mended.empty()) log_.changes.push_back({simulation.steps(), EventLog::Change::remeshing, 0});
   }
-  if (adapt_every_ > 0 && simulation_.steps() % adapt_every_ == 0) adapt();
-  if (!log_.changes.empty()) log_.in_opened = count_in_opened();
+  if (adapt_every_ > 0 && simulation.steps() % adapt_every_ == 0) adapt(simulation);
+  if (!log_.changes.empty()) log_.in_opened = count_in_opened(simulation);
 }
 
 // Cells beside a repaired region that stay inverted may refuse the whole repair. All cells are left then.
-RepairReport EventScheduler::remesh() {
+RepairReport EventScheduler::remesh(Simulation& simulation) {
   try {
-    return simulation_.repair(remeshing_.options);
+    return simulation.repair(remeshing_.options);
   } catch (const EditRefused& e) {
     RepairReport report;
     for (const InvalidCell& bad : environment_.validity(environment_.map().cell_count()).first)
@@ -139,63 +142,59 @@ RepairReport EventScheduler::remesh() {
   }
 }
 
-AdaptiveSubdivisionReport EventScheduler::adapt() {
+AdaptiveSubdivisionReport EventScheduler::adapt(Simulation& simulation) {
   AdaptiveSubdivisionReport report = subdivision_.adapt(
-      environment_.complex(), simulation_.particles(),
-      [&](const std::function<void(ComplexEdit&)>& make) { return simulation_.edit(make).edit; },
-      simulation_.options().ranks);
+      environment_.complex(), simulation.particles(),
+      [&](const std::function<void(ComplexEdit&)>& make) { return simulation.edit(make).edit; },
+      simulation.options().ranks);
   log_.subdivided += report.subdivided;
   log_.merged += report.merged;
   log_.refused = report.refused.size();
   for (const SubdivisionChange& c : report.changes) {
     const std::uint32_t event = c.merged ? EventLog::Change::merging : EventLog::Change::subdividing;
-    log_.changes.push_back({simulation_.steps(), event, c.what});
+    log_.changes.push_back({simulation.steps(), event, c.what});
   }
   return report;
 }
 
-void EventScheduler::after_edit() {
-  subdivision_.update_after_edit(environment_.map(), environment_.last_edit().map.added);
-}
-
-void EventScheduler::replay(const EventLog& log) {
+void EventScheduler::replay(Simulation& simulation, const EventLog& log) {
   const std::size_t made = log_.changes.size();
   if (made > log.changes.size() || !std::equal(log_.changes.begin(), log_.changes.end(), log.changes.begin()))
     throw InvalidArgument("events: the edits so far differ from those of the checkpoint; make a new simulation");
   for (std::size_t i = made; i < log.changes.size(); ++i) {
-    simulation_.go_to(log.changes[i].step);
-    repeat(log.changes[i]);
+    simulation.go_to(log.changes[i].step);
+    repeat(simulation, log.changes[i]);
     log_.changes.push_back(log.changes[i]);
   }
 }
 
-void EventScheduler::repeat(const EventLog::Change& change) {
+void EventScheduler::repeat(Simulation& simulation, const EventLog::Change& change) {
   if (change.event == EventLog::Change::remeshing) {
-    remesh();
+    remesh(simulation);
   } else if (change.event == EventLog::Change::subdividing || change.event == EventLog::Change::merging) {
-    repeat_subdivision(change);
+    repeat_subdivision(simulation, change);
   } else if (change.event < events_.size()) {
-    carry_out(change.event);
+    carry_out(simulation, change.event);
     next_ = change.event + 1;
   } else {
     throw InvalidArgument("events: the log names an event that the scene does not have");
   }
 }
 
-void EventScheduler::repeat_subdivision(const EventLog::Change& change) {
-  const auto edit = [&](const std::function<void(ComplexEdit&)>& make) { return simulation_.edit(make).edit; };
+void EventScheduler::repeat_subdivision(Simulation& simulation, const EventLog::Change& change) {
+  const auto edit = [&](const std::function<void(ComplexEdit&)>& make) { return simulation.edit(make).edit; };
   subdivision_.repeat(environment_.complex(), {change.event == EventLog::Change::merging, change.what}, edit);
 }
 
-std::uint64_t EventScheduler::count_in_opened() const {
+std::uint64_t EventScheduler::count_in_opened(const Simulation& simulation) const {
   const CombinatorialMap& map = environment_.map();
-  const auto states = simulation_.particles().states();
+  const auto states = simulation.particles().states();
   std::uint64_t count = 0;
   for (const ParticleState& s : states) {
     const std::uint32_t source = map.source(s.cell);
     count += !s.held && source < blocked_.size() && blocked_[source] ? 1 : 0;
   }
-  sum_over(simulation_.options().ranks, {&count, 1});
+  sum_over(simulation.options().ranks, {&count, 1});
   return count;
 }
 

@@ -35,10 +35,6 @@ void Inlets::inject(const Add& add) {
   }
 }
 
-void Inlets::update_after_edit(const ComplexEditReport& edit) {
-  for (Inlet& inlet : inlets_) inlet.sampler.update_after_edit(environment_.complex(), edit);
-}
-
 // They draw from the areas at rest.
 void Inlets::change_part(const std::optional<SampledPart>& part) {
   std::vector<Inlet> inlets;

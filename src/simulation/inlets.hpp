@@ -16,8 +16,13 @@ namespace dartcast {
 class Inlets {
  public:
   /// All outlive it.
-  Inlets(const Environment& environment, const MovingVertices& motion, const SimulationOptions& options)
-      : environment_(environment), motion_(motion), options_(options) {}
+  Inlets(const Environment& environment, Followers& followers, const MovingVertices& motion,
+         const SimulationOptions& options)
+      : environment_(environment), motion_(motion), options_(options) {
+    followers.add([this](const ComplexEditReport& edit, OrphanPolicy /*orphaned*/) {
+      for (Inlet& inlet : inlets_) inlet.sampler.update_after_edit(environment_.complex(), edit);
+    });
+  }
 
   /// Throws as Simulation::add_inlet().
   void add(Patch patch, double rate, const NewParticle& particle, const std::optional<SampledPart>& part);
@@ -25,7 +30,6 @@ class Inlets {
   using Add = std::function<void(const PatchSampler& sampler, std::uint64_t count, const NewParticle& particle)>;
   /// Calls `add` for each inlet that injects in the next step.
   void inject(const Add& add);
-  void update_after_edit(const ComplexEditReport& edit);
   /// The environment is now this part, at rest.
   void change_part(const std::optional<SampledPart>& part);
 

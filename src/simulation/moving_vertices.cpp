@@ -7,6 +7,13 @@
 
 namespace dartcast {
 
+MovingVertices::MovingVertices(Environment& environment, Followers& followers, double dt)
+    : environment_(environment), dt_(dt) {
+  followers.add([this](const ComplexEditReport& edit, OrphanPolicy /*orphaned*/) {
+    if (deformation_) deformation_->update_after_edit(edit, environment_.positions().size());
+  });
+}
+
 void MovingVertices::set_deformation(Deformation deformation) {
   if (deformation.size() != environment_.positions().size()) {
     throw InvalidArgument(
@@ -41,10 +48,6 @@ void MovingVertices::move() {
   next_.resize(environment_.positions().size());
   deformation_->positions(static_cast<double>(steps_ + 1) * dt_, next_, environment_.threads());
   mover_(next_);
-}
-
-void MovingVertices::update_after_edit(const ComplexEditReport& edit) {
-  if (deformation_) deformation_->update_after_edit(edit, environment_.positions().size());
 }
 
 void MovingVertices::go_to(std::uint64_t steps) {

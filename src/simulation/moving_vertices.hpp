@@ -10,6 +10,7 @@
 
 #include "dartcast/deformation.hpp"
 #include "dartcast/environment.hpp"
+#include "simulation/followers.hpp"
 #include "simulation/simulation_state.hpp"
 
 namespace dartcast {
@@ -18,7 +19,7 @@ namespace dartcast {
 class MovingVertices {
  public:
   /// `dt`: of a step, s.
-  MovingVertices(Environment& environment, double dt) : environment_(environment), dt_(dt) {}
+  MovingVertices(Environment& environment, Followers& followers, double dt);
 
   void set_deformation(Deformation deformation);
   void pull(std::span<const Vec3> displacement, double duration);
@@ -35,7 +36,6 @@ class MovingVertices {
   /// Moves the vertices to their places after the next step.
   void move();
   void count_step() { ++steps_; }
-  void update_after_edit(const ComplexEditReport& edit);
 
   void go_to(std::uint64_t steps);
   /// Moves the vertices as after the last of these steps: where they were before it counts, too. Vertices that an edit made

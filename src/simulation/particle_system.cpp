@@ -97,14 +97,15 @@ void check(const SimulationOptions& o) {
 
 }  // namespace
 
-ParticleSystem::ParticleSystem(Environment& environment, MovingVertices& motion, const SimulationOptions& options)
+ParticleSystem::ParticleSystem(Environment& environment, Followers& followers, MovingVertices& motion,
+                               const SimulationOptions& options)
     : environment_(environment),
       motion_(motion),
       options_(options),
       responses_(responses_of(options, environment.map())),
       set_(options.user_data.size()),
-      aiming_(environment, motion, options_),
-      contacts_(environment, motion, options_, responses_) {
+      aiming_(environment, followers, motion, options_),
+      contacts_(environment, followers, motion, options_, responses_) {
   check(options);
   if (environment.map().dimension() == 2 && options.gravity.z != 0.0)
     throw InvalidArgument(fmt::format("simulation: gravity is ({}, {}, {}): in the plane its z must be 0",
@@ -233,12 +234,10 @@ void ParticleSystem::remove_gone(std::span<const std::uint8_t> departed) {
   if (part_ != nullptr) set_.put_in_order_of_ids();
 }
 
-void ParticleSystem::update_after_edit(const ComplexEditReport& edit, OrphanPolicy orphaned) {
+void ParticleSystem::update_after_edit(const ComplexEditReport& /*edit*/, OrphanPolicy orphaned) {
   const std::vector<ParticleState> before(set_.states.states().begin(), set_.states.states().end());
-  contacts_.forget_walls();
   edited_.report = environment_.update_after_edit(set_.states, orphaned);
   remove_absorbed(edited_.report, before);
-  aiming_.update_after_edit(edit);
 }
 
 void ParticleSystem::remove_absorbed(const UpdateReport& report, std::span<const ParticleState> before) {

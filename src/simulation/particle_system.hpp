@@ -28,7 +28,8 @@ class Inlets;
 /// of one of Simulation's does the work of that function.
 class ParticleSystem final : public SimulationComponent {
  public:
-  ParticleSystem(Environment& environment, MovingVertices& motion, const SimulationOptions& options);
+  ParticleSystem(Environment& environment, Followers& followers, MovingVertices& motion,
+                 const SimulationOptions& options);
 
   [[nodiscard]] Aiming& aiming() { return aiming_; }
   /// The environment is a part of one that ranks share by cells. Precondition: there are no particles.

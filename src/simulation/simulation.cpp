@@ -20,7 +20,7 @@ SimulationCheckpoint::SimulationCheckpoint(SimulationState state)
 std::uint64_t SimulationCheckpoint::steps() const { return state_->particles.steps; }
 
 Simulation::Simulation(Environment& environment, const SimulationOptions& options)
-    : parts_(std::make_unique<Parts>(*this, nullptr, environment, options)) {}
+    : parts_(std::make_unique<Parts>(nullptr, environment, options)) {}
 
 Simulation::~Simulation() = default;
 
@@ -37,7 +37,7 @@ const SimulationStep& Simulation::step() {
   const double begin = time();
   parts_->motion.load_step();
   parts_->particles.aiming().load_step();
-  parts_->events.before_step();
+  parts_->events.before_step(*this);
   parts_->particles.inject(parts_->inlets);
   parts_->statistics.note_start();
   for (SimulationComponent* component : parts_->components) {
@@ -47,21 +47,14 @@ const SimulationStep& Simulation::step() {
   if (are_several(options().ranks))
     gather_step(*options().ranks, parts_->particles, parts_->statistics, parts_->gathers_contacts);
   parts_->statistics.count();
-  parts_->events.after_step();
+  parts_->events.after_step(*this);
   return parts_->particles.last_step();
 }
 
 SimulationEdit Simulation::edit(const std::function<void(ComplexEdit&)>& make, OrphanPolicy orphaned) {
   SimulationEdit done;
   done.edit = parts_->environment.edit(make);
-  parts_->motion.update_after_edit(done.edit);
-  parts_->inlets.update_after_edit(done.edit);
-  for (SimulationComponent* component : parts_->components) {
-    if (parts_->replaying && component != &parts_->particles) continue;
-    component->update_after_edit(done.edit, orphaned);
-  }
-  parts_->events.after_edit();
-  if (parts_->after_edit) parts_->after_edit(parts_->environment);
+  parts_->followers.call(done.edit, orphaned);
   done.particles = parts_->particles.edited().report;
   return done;
 }
@@ -77,7 +70,7 @@ RepairReport Simulation::repair(const RepairOptions& options) {
   return report;
 }
 
-AdaptiveSubdivisionReport Simulation::adapt() { return parts_->events.adapt(); }
+AdaptiveSubdivisionReport Simulation::adapt() { return parts_->events.adapt(*this); }
 
 void Simulation::set_events(std::vector<Event> events) { parts_->events.set_events(std::move(events)); }
 void Simulation::set_remeshing(const RemeshScene& remeshing) { parts_->events.set_remeshing(remeshing); }
@@ -98,15 +91,11 @@ SimulationCheckpoint Simulation::checkpoint() const {
 
 void Simulation::restore(const SimulationCheckpoint& saved) {
   parts_->statistics.check(saved.state());
-  parts_->replaying = true;
   parts_->motion.set_known_places(saved.state().solids.places);
-  try {
-    parts_->events.replay(saved.state().events);
-  } catch (...) {
-    parts_->replaying = false;
-    throw;
+  {
+    const Followers::Repeating repeating(parts_->followers);
+    parts_->events.replay(*this, saved.state().events);
   }
-  parts_->replaying = false;
   parts_->motion.set_known_places({});
   // Whether states fit is seen only where the vertices stand as they did then. So a refusal comes late, and is undone.
   const SimulationCheckpoint former = checkpoint();

@@ -20,17 +20,24 @@ namespace dartcast {
 
 struct Simulation::Parts {
   /// `own`: the environment, where the simulation has made it; none where it is another's.
-  Parts(Simulation& simulation, std::unique_ptr<Environment> own, Environment& used, const SimulationOptions& options)
+  Parts(std::unique_ptr<Environment> own, Environment& used, const SimulationOptions& options)
       : own_environment(std::move(own)),
         environment(used),
-        motion(used, options.dt),
-        particles(used, motion, options),
-        inlets(used, motion, particles.options()),
+        motion(used, followers, options.dt),
+        particles(used, followers, motion, options),
+        inlets(used, followers, motion, particles.options()),
         solids(used, motion, options.dt),
         bodies(used, particles.options(), particles.responses()),
         catheters(used, options.dt),
         statistics(particles),
-        events(simulation, used, options.dt) {}
+        events(used, followers, options.dt) {
+    for (SimulationComponent* component : components)
+      followers.add([=](auto& edit, OrphanPolicy orphaned) { component->update_after_edit(edit, orphaned); },
+                    component == &particles);
+    followers.add([this](const ComplexEditReport& /*edit*/, OrphanPolicy /*orphaned*/) {
+      if (after_edit) after_edit(environment);
+    });
+  }
 
   /// The environment is this part of one.
   void spread(MeshPart mesh, const Scene& scene) {
@@ -48,6 +55,7 @@ struct Simulation::Parts {
   std::unique_ptr<Scene> spread_scene;  // all that the simulation was made of; none: its user has changed it since
   std::uint64_t balanced = 0;           // how often cells have moved to other ranks
   Environment& environment;
+  Followers followers;
   MovingVertices motion;
   ParticleSystem particles;
   Inlets inlets;
@@ -60,7 +68,6 @@ struct Simulation::Parts {
   EventScheduler events;
   AfterEdit after_edit;
   bool gathers_contacts = true;  // of all ranks, on the first
-  bool replaying = false;        // earlier edits: all but the particles are restored afterwards
   double seconds_solids = 0.0;
 
   /// From now on walls move together with the solids, bodies and catheters that stop them.

@@ -115,7 +115,7 @@ void Simulation::make(const Scene& scene, Threads threads, Ranks* ranks, Partiti
   if (!part) check_patches(scene, mesh);
   auto own = std::make_unique<Environment>(mesh, threads);
   Environment& environment = *own;
-  parts_ = std::make_unique<Parts>(*this, std::move(own), environment, options_of(scene, ranks));
+  parts_ = std::make_unique<Parts>(std::move(own), environment, options_of(scene, ranks));
   const bool reported = partition == Partition::particles && scene.output.report && scene.output.every > 0;
   parts_->gathers_contacts = scene.output.contacts || reported || scene.statistics.options.any();
   furnish(*parts_, scene, mesh, part ? part->points : std::vector<std::uint32_t>());

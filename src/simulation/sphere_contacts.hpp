@@ -20,9 +20,11 @@ namespace dartcast {
 class SphereContacts {
  public:
   /// All outlive it.
-  SphereContacts(const Environment& environment, const MovingVertices& motion, const SimulationOptions& options,
-                 const WallResponses& responses)
-      : environment_(environment), motion_(motion), options_(options), responses_(responses) {}
+  SphereContacts(const Environment& environment, Followers& followers, const MovingVertices& motion,
+                 const SimulationOptions& options, const WallResponses& responses)
+      : environment_(environment), motion_(motion), options_(options), responses_(responses) {
+    followers.add([this](const ComplexEditReport& /*edit*/, OrphanPolicy /*orphaned*/) { forget_walls(); });
+  }
 
   /// Bodies that the spheres meet; they step after each step of the particles.
   void set_bodies(Bodies& bodies) { bodies_ = &bodies; }
@@ -36,7 +38,7 @@ class SphereContacts {
   /// Puts the contacts with walls whose impulses were solved before those of the spheres' own steps, with times that do not
   /// fall.
   void add_to(StepReport& report);
-  /// After edits, and where particles have other indices.
+  /// Where particles have other indices.
   void forget_walls() { clear_.clear(); }
   void save(ParticleSystemState& state) const;
   void restore(const ParticleSystemState& state);

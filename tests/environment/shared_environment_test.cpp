@@ -7,6 +7,7 @@
 #include <map>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/random.hpp"
@@ -146,6 +147,13 @@ TEST(SharedEnvironment, DataGoAlong) {
         EXPECT_EQ(particles.user_data(i)[0], 10.0 + static_cast<double>(particles.ids()[i]));
         EXPECT_EQ(particles.user_data(i)[1], -particles.user_data(i)[0]);
       }
+    }
+    SharedParticles copy = particles;
+    SharedParticles moved = std::move(copy);
+    copy = particles;
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+      copy.user_data(i)[0] = 0.0;
+      EXPECT_EQ(moved.user_data(i)[0], particles.user_data(i)[0]);
     }
     ranks.sum({&left, 1});
     EXPECT_GE(left, 2U);

@@ -70,7 +70,7 @@ class Marked {
   Column<double> mark_;
 };
 
-TEST(ParticleTable, TakesANewColumnThroughStepsEditsAndCheckpoints) {
+TEST(ParticleSet, TakesANewColumnThroughStepsEditsAndCheckpoints) {
   Marked marked(channel(200));
   Simulation& s = marked.simulation;
   for (int i = 0; i < 50; ++i) s.step();
@@ -93,7 +93,7 @@ TEST(ParticleTable, TakesANewColumnThroughStepsEditsAndCheckpoints) {
   marked.expect_marks();
 }
 
-TEST(ParticleTable, TakesANewColumnFromRankToRank) {
+TEST(ParticleSet, TakesANewColumnFromRankToRank) {
   test::on_ranks(2, [&](Ranks& ranks) {
     Marked marked(channel(200), &ranks, Partition::cells);
     for (int i = 0; i < 50; ++i) {
@@ -107,7 +107,7 @@ TEST(ParticleTable, TakesANewColumnFromRankToRank) {
   });
 }
 
-TEST(ParticleTable, JoinsANewColumnOfAllRanks) {
+TEST(ParticleSet, JoinsANewColumnOfAllRanks) {
   std::mutex mutex;
   std::vector<SimulationCheckpoint> parts;
   test::on_ranks(3, [&](Ranks& ranks) {
@@ -122,6 +122,23 @@ TEST(ParticleTable, JoinsANewColumnOfAllRanks) {
   alone.simulation.restore(joined(parts));
   EXPECT_TRUE(std::equal(ids.begin(), ids.end(), alone.simulation.ids().begin(), alone.simulation.ids().end()));
   alone.expect_marks();
+}
+
+// A file of no particles does not say how many numbers they would have.
+TEST(ParticleSet, JoinsUserDataBehindARankWithoutParticles) {
+  SimulationState with;
+  ParticleTable table(2);
+  table.append_zeros(2);
+  table[table.id][0] = 7;
+  table[table.id][1] = 5;
+  table[table.user_data][1] = 0.5;
+  with.particles.table = SavedParticles(table);
+  const std::vector<SimulationCheckpoint> parts = {SimulationCheckpoint(SimulationState()), SimulationCheckpoint(with)};
+  const SimulationCheckpoint all = joined(parts);
+  const SavedParticles& saved = all.state().particles.table;
+  EXPECT_EQ(saved[saved.id][0], 5U);
+  ASSERT_EQ(saved[saved.user_data].size(), 4U);
+  EXPECT_EQ(saved[saved.user_data][3], 0.5);
 }
 
 }  // namespace dartcast::particle_set_test

@@ -92,6 +92,15 @@ TEST(WallMotion, ResponsesKnowTheVelocityOfTheWall) {
   EXPECT_NEAR(simulation.particles()[0].position.z, 0.25 + 2.0 * 0.75, 1e-5);
 }
 
+TEST(WallMotion, SpheresAreRefusedHoweverTheyAreAdded) {
+  Environment environment(test::cubes(2), Threads{1});
+  Simulation simulation(environment, options());
+  const std::vector<Vec3> positions = {{0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}};
+  EXPECT_THROW(simulation.add(positions, Vec3{}, 0.1), InvalidArgument);
+  EXPECT_THROW(simulation.add(positions, std::vector<Vec3>(2), std::vector<double>{0.0, 0.1}), InvalidArgument);
+  EXPECT_EQ(simulation.particles().size(), 0U);
+}
+
 TEST(WallMotion, ScenesChooseIt) {
   Scene scene;
   scene.environment.mesh = test::cubes(2);
