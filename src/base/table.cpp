@@ -1,8 +1,11 @@
 // Operations on rows, column by column.
 #include "base/table.hpp"
 
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
 #include "base/kept_runs.hpp"
-#include "base/put_in_order.hpp"
 
 namespace dartcast {
 
@@ -51,7 +54,25 @@ void Table::remove(std::span<const std::uint8_t> marks) {
 }
 
 void Table::reorder(std::span<const std::uint32_t> order) {
-  for (Values& c : columns_) put_in_order(c.bytes, order, c.width);
+  for (Values& c : columns_) {
+    std::vector<std::byte> sorted;
+    sorted.reserve(c.bytes.size());
+    for (const std::uint32_t row : order) {
+      const std::byte* const first = c.bytes.data() + row * c.width;
+      sorted.insert(sorted.end(), first, first + c.width);
+    }
+    c.bytes = std::move(sorted);
+  }
+}
+
+std::vector<std::uint32_t> Table::sort_by(Column<std::uint64_t> numbers) {
+  const std::span<const std::uint64_t> n = (*this)[numbers];
+  if (std::is_sorted(n.begin(), n.end())) return {};
+  std::vector<std::uint32_t> order(rows_);
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return n[a] < n[b]; });
+  reorder(order);
+  return order;
 }
 
 }  // namespace dartcast

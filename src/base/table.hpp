@@ -71,6 +71,8 @@ class Table {
   void remove(std::span<const std::uint8_t> marks);
   /// Row i is then the former row order[i]. `order`: a permutation.
   void reorder(std::span<const std::uint32_t> order);
+  /// Puts the rows in the order of these numbers. Returns that for reorder(); empty: they have it already.
+  std::vector<std::uint32_t> sort_by(Column<std::uint64_t> numbers);
 
  private:
   struct Values {

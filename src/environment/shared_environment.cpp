@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/put_in_order.hpp"
 #include "base/table.hpp"
 #include "dartcast/error.hpp"
 #include "environment/audit_of_all.hpp"
@@ -97,10 +96,8 @@ SharedStep SharedEnvironment::advance(SharedParticles& particles, std::span<cons
   step.come = particles.size() - before;
   particles.particles_.remove(gone);
   particles.beside_->remove(gone);
-  const std::vector<std::uint32_t> order = order_of(particles.ids());
-  if (order.empty()) return step;
-  particles.particles_.reorder(order);
-  particles.beside_->reorder(order);
+  const std::vector<std::uint32_t> order = particles.beside_->sort_by(particles.beside_->id);
+  if (!order.empty()) particles.particles_.reorder(order);
   return step;
 }
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "base/put_in_order.hpp"
 #include "dartcast/error.hpp"
 
 namespace dartcast {
@@ -57,10 +56,8 @@ void ParticleSet::count_spheres() {
 }
 
 void ParticleSet::put_in_order_of_ids() {
-  const std::vector<std::uint32_t> order = order_of(table[table.id]);
-  if (order.empty()) return;
-  states.reorder(order);
-  table.reorder(order);
+  const std::vector<std::uint32_t> order = table.sort_by(table.id);
+  if (!order.empty()) states.reorder(order);
 }
 
 }  // namespace dartcast

@@ -60,7 +60,11 @@ struct ParticleSet {
   [[nodiscard]] std::span<const Vec3> velocities() const { return table[table.velocity]; }
   [[nodiscard]] std::span<ParticleStatus> fates() { return table[table.fate]; }
   [[nodiscard]] std::span<const ParticleStatus> fates() const { return table[table.fate]; }
+  [[nodiscard]] std::span<const std::uint32_t> contact_counts() const { return table[table.contact_count]; }
   [[nodiscard]] std::span<const double> radii() const { return table[table.radius]; }
+  [[nodiscard]] std::span<const std::uint8_t> held() const { return table[table.held]; }
+  [[nodiscard]] std::span<double> user_data(std::size_t i) { return table.row(table.user_data, i); }
+  [[nodiscard]] std::span<const double> user_data(std::size_t i) const { return table.row(table.user_data, i); }
 
   /// Adds the row of the next state that has none.
   void complete(std::uint64_t id, const NewParticle& particle);

@@ -201,23 +201,13 @@ const Particles& Simulation::particles() const { return parts_->particles.set().
 std::span<const std::uint64_t> Simulation::ids() const { return parts_->particles.set().ids(); }
 std::span<const Vec3> Simulation::velocities() const { return parts_->particles.set().velocities(); }
 std::span<const ParticleStatus> Simulation::fates() const { return parts_->particles.set().fates(); }
-std::span<const std::uint32_t> Simulation::contact_counts() const {
-  const ParticleTable& table = parts_->particles.set().table;
-  return table[table.contact_count];
-}
+std::span<const std::uint32_t> Simulation::contact_counts() const { return parts_->particles.set().contact_counts(); }
 std::span<const double> Simulation::radii() const { return parts_->particles.set().radii(); }
-std::span<const std::uint8_t> Simulation::held() const {
-  const ParticleTable& table = parts_->particles.set().table;
-  return table[table.held];
-}
+std::span<const std::uint8_t> Simulation::held() const { return parts_->particles.set().held(); }
 std::span<const double> Simulation::user_data(std::size_t particle) const {
-  const ParticleTable& table = parts_->particles.set().table;
-  return table.row(table.user_data, particle);
+  return std::as_const(parts_->particles).set().user_data(particle);
 }
-std::span<double> Simulation::user_data(std::size_t particle) {
-  ParticleTable& table = parts_->particles.set().table;
-  return table.row(table.user_data, particle);
-}
+std::span<double> Simulation::user_data(std::size_t particle) { return parts_->particles.set().user_data(particle); }
 
 const Bodies* Simulation::bodies() const {
   const std::optional<Bodies>& bodies = std::as_const(parts_->bodies).bodies();

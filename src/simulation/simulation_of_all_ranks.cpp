@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/put_in_order.hpp"
 #include "base/reduced.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/simulation.hpp"
@@ -110,9 +109,7 @@ SimulationCheckpoint joined(std::span<const SimulationCheckpoint> parts) {
     all.particles.gone += p.gone;
     add_sums(all.particles.totals, p.totals);
   }
-  SavedParticles& table = all.particles.table;
-  const std::vector<std::uint32_t> order = order_of(table[table.id]);  // as one process has them
-  if (!order.empty()) table.reorder(order);
+  all.particles.table.sort_by(all.particles.table.id);  // as one process has them
   return SimulationCheckpoint(std::move(all));
 }
 

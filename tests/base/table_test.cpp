@@ -89,7 +89,7 @@ class Pair {
     for (int k = 0; k < 3; ++k) {
       const std::size_t i = below(count);
       table_.pack(i, out);
-      rows_.push_back(Row(rows_[i]));
+      rows_.push_back(rows_[i]);
     }
     for (ByteReader in(out.bytes()); !in.at_end();) table_.append(in);
   }
@@ -111,9 +111,8 @@ class Pair {
     std::iota(order.begin(), order.end(), 0U);
     for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[below(i)]);
     table_.reorder(order);
-    std::vector<Row> next;
-    for (const std::uint32_t i : order) next.push_back(rows_[i]);
-    rows_ = next;
+    const std::vector<Row> before = rows_;
+    for (std::size_t i = 0; i < order.size(); ++i) rows_[i] = before[order[i]];
   }
 
   Random random_;
@@ -142,6 +141,16 @@ TEST(Table, GetsColumnsWhenItHasRows) {
   table.set_width(more, 1);
   EXPECT_EQ(table[more].size(), 2U);
   EXPECT_EQ(table[more][1], 0.0F);
+}
+
+TEST(Table, IsSortedByNumbers) {
+  Rows table;
+  table.append_zeros(3);
+  for (const std::size_t i : {0U, 1U, 2U}) table.put(i, {7 * (i + 1) % 10, static_cast<std::uint8_t>(i), {}});
+  EXPECT_EQ(table.sort_by(table.id), (std::vector<std::uint32_t>{2, 1, 0}));
+  EXPECT_EQ(table[table.id][0], 1U);
+  EXPECT_EQ(table[table.mark][0], 2U);
+  EXPECT_TRUE(table.sort_by(table.id).empty());
 }
 
 TEST(Table, RefusesARowThatEndsTooEarly) {
