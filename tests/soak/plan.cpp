@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "dartcast/combinatorial_map.hpp"
 #include "dartcast/error.hpp"
 #include "support/random_vectors.hpp"
 #include "support/solid_scenes.hpp"
@@ -16,15 +17,29 @@ constexpr double dt = 0.05;
 
 }  // namespace
 
-// A patch may lie between blocked cells, and a baffle anywhere: inlets need faces of free cells.
+namespace {
+
+// A patch with a wall of a free cell; empty: there is none.
+std::string door_of(const MeshData& mesh) {
+  const CombinatorialMap map(mesh);
+  for (const Cell c : map.cells()) {
+    const CellView cell = map.view(c);
+    for (std::uint16_t f = 0; cell.is_free() && f < cell.shape().face_count(); ++f)
+      if (cell.is_wall(f) && map.patch({c, f}).value != 0) return map.patch_names()[map.patch({c, f}).value];
+  }
+  return "";
+}
+
+}  // namespace
+
 Plan::Plan(const Case& c, const SceneMesh& scene)
     : case_(c),
       scene_(scene),
       space_(scene.mesh.dimension() == 3),
-      has_patches_(!scene.mesh.patch_tags.empty() && scene.mesh.baffle_tags.empty() && scene.mesh.free.empty()),
+      door_(door_of(scene.mesh)),
       choice_(random_for(c, Use::mover, 77).next()) {}
 
-bool Plan::has_inlet() const { return has(16) && has_patches_ && case_[Knob::edit] == 0; }
+bool Plan::has_inlet() const { return has(16) && !door_.empty(); }
 
 std::vector<double> Plan::user_data() const { return has(3) ? std::vector{1.5, -0.0} : std::vector<double>{}; }
 
@@ -33,36 +48,26 @@ Vec3 Plan::velocity() const {
   return space_ ? v : Vec3{v.x, v.y, 0.0};
 }
 
-bool Plan::allows_cells() const {
-  const bool carried = options(nullptr).wall_motion == WallMotion::carried;
-  return space_ && carried && case_[Knob::edit] == 0 && !has_spheres() && !has(6) && !has(7) && !has(9) && !has(10) &&
-         !has(11);
-}
-
 Scene Plan::scene() const {
   const SimulationOptions o = options(nullptr);
   Scene s;
   s.seed = o.seed;
-  s.environment.mesh = scene_.mesh;
+  MeshData mesh = scene_.mesh;
+  if (has_field()) {
+    DataArray& array = mesh.point_data.emplace_back(DataArray{"u", 3, {}});
+    for (const Vec3& v : field()) array.values.insert(array.values.end(), {v.x, v.y, v.z});
+    s.motion.field.array = "u";
+    s.motion.field.frame = has(15) ? FieldFrame::mesh : FieldFrame::space;
+  }
+  s.environment.mesh = std::move(mesh);
   if (case_[Knob::motion] != 0) s.deformation.push_back({deformation(), {}, {}, {}, 0.0});
   s.particles.push_back({RandomParticles{60}, velocity(), 0.0, user_data()});
-  if (has_inlet())
-    s.particles.push_back(
-        {InletParticles{scene_.mesh.patch_names.at(scene_.mesh.patch_tags[0]), 40.0}, {}, 0.0, user_data()});
+  if (has_inlet()) s.particles.push_back({InletParticles{door_, 40.0}, {}, 0.0, user_data()});
   s.user_data = o.user_data;
-  s.motion = {.dt = o.dt,
-              .gravity = o.gravity,
-              .field = {},
-              .force = {},
-              .drag = o.drag,
-              .substeps = o.substeps,
-              .integrator = o.integrator};
-  if (has_field()) {
-    s.motion.field.frame = has(15) ? FieldFrame::mesh : FieldFrame::space;
-    s.motion.field.samples = field_samples({0.0}, {field()});
-  }
+  s.motion.dt = o.dt;
+  s.motion.gravity = o.gravity;
+  s.motion.drag = o.drag;
   s.contact.general = o.response;
-  if (has(5)) s.statistics.options = statistics();
   return s;
 }
 
@@ -89,7 +94,7 @@ void Plan::fill(Simulation& s, bool particles) const {
   if (case_[Knob::motion] != 0) s.set_deformation({{deformation()}, s.environment().positions()});
   if (has(5)) s.set_statistics(statistics());
   if (has_field()) s.set_field({s.environment().complex(), field(), has(15) ? FieldFrame::mesh : FieldFrame::space});
-  if (has_inlet()) s.add_inlet(Patch{1}, 40.0, {}, 0.0, user_data());
+  if (has_inlet()) s.add_inlet(s.environment().map().patch(door_), 40.0, {}, 0.0, user_data());
   if (case_[Knob::edit] != 0) s.set_events(events());
   if (space_ && has(6)) s.set_remeshing({.every = 2, .options = {}});
   if (space_ && has(7)) s.set_adaptive_subdivision({.every = 2, .options = {.max_particles = 6, .min_particles = 2}});

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "dartcast/deformation.hpp"
@@ -26,9 +27,7 @@ class Plan {
   /// Adds all parts. Those that find no place are left out, alike in all that are made so. `particles`: whether there are
   /// any; a checkpoint brings them.
   void fill(Simulation& s, bool particles) const;
-  /// Whether ranks may share it by cells.
-  [[nodiscard]] bool allows_cells() const;
-  /// Its points, walls and field as a scene, which ranks can share by cells.
+  /// Its points, motion and fields as a scene in space, without all that ranks by cells refuse.
   [[nodiscard]] Scene scene() const;
 
  private:
@@ -50,7 +49,7 @@ class Plan {
   const Case& case_;
   const SceneMesh& scene_;
   bool space_;
-  bool has_patches_;
+  std::string door_;  // the patch of inlets; empty: there is none
   std::uint64_t choice_;
 };
 

@@ -4,6 +4,7 @@
 #include <atomic>
 
 #include "dartcast/cell_complex.hpp"
+#include "dartcast/error.hpp"
 #include "dartcast/replay.hpp"
 #include "dartcast/spheres.hpp"
 #include "soak/guests.hpp"
@@ -113,6 +114,8 @@ class Points : public Guest {
     if (wrong.empty() && step.valid && !step.moved)
       wrong = compare_with_walls(environment, before, targets, report, seen);
     if (wrong.empty() && !step.moved) wrong = check_energy(*answers);
+    for (const ParticleStatus fate : answers->fates)
+      if (fate != ParticleStatus::alive) seen.note(Mark::left);
     if (!wrong.empty() && at_fault_) seen.replay = record(environment, step, before, targets, *at_fault_);
     crowd_.answered(*answers);
     return wrong;
@@ -128,12 +131,19 @@ class Points : public Guest {
   // A step that is recorded, written and read does the same among its few cells.
   std::string take_again(const Environment& environment, const Step& step, const Particles& before,
                          const std::vector<Vec3>& targets, Seen& seen) {
-    if (before.size() == 0 || !step.valid || environment.complex().steiner_point_count() > 0) return "";
+    if (before.size() == 0 || environment.complex().steiner_point_count() > 0) return "";
     const std::size_t i = random_for(case_, Use::throwing, step.number, 1).below(std::uint32_t(before.size()));
     const StepReplay recorded = record(environment, step, before, targets, i);
-    const ReplayResult result = replay(replay_of_text(replay_text(recorded)));
+    ReplayResult result;
+    try {
+      result = replay(replay_of_text(replay_text(recorded)));
+    } catch (const Error&) {  // cells that are not valid then, or get a Steiner point
+      if (step.valid) throw;
+      return "";
+    }
     std::string wrong = result.wrong;
-    if (wrong.empty() && !result.cut && test::bits(result.state.position) != test::bits(crowd_.particles[i].position))
+    if (wrong.empty() && step.valid && !result.cut &&
+        test::bits(result.state.position) != test::bits(crowd_.particles[i].position))
       wrong = "it ends elsewhere";
     seen.note(Mark::taken_again);
     if (wrong.empty()) return "";

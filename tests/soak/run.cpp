@@ -115,7 +115,11 @@ class Run {
     for (const auto& guest : guests_) guest->crowd().keep_chambers(*chambers_);
   }
   void follow() {
-    for (const auto& guest : guests_) guest->crowd().follow(*environment_);
+    for (const auto& guest : guests_) {
+      const std::size_t before = guest->crowd().size();
+      guest->crowd().follow(*environment_);
+      if (guest->crowd().size() < before) seen_.note(Mark::left);
+    }
     keep_chambers();
   }
 

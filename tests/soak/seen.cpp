@@ -32,6 +32,51 @@ const std::vector<Feature>& features() {
 
 std::size_t first_mark() { return features().size() - mark_count; }
 
+// Pairs that cannot be: the starts of both names.
+struct Impossible {
+  std::vector<std::string_view> one, others;
+  std::string_view why;
+};
+const std::vector<Impossible>& impossible() {
+  static const std::vector<Impossible> list = {
+      {{"mesh: plane", "mesh: maze"},
+       {"a catheter pushed", "a cell of nine faces", "a simulation shared by cells", "a solid stuck", "an inlet",
+        "contact of a", "contact with a face", "walls that were stopped"},
+       "these are of space"},
+      {{"mover: environment", "mover: solids", "mover: bodies", "mover: catheter"},
+       {"a field", "a simulation shared by cells", "an inlet", "statistics"},
+       "only a simulation has these"},
+      {{"mover: environment"},
+       {"a catheter pushed", "a solid stuck", "contact of a", "walls that were stopped"},
+       "the environment moves the vertices itself"},
+      {{"mover: solids"}, {"a catheter pushed", "contact of a body"}, "there are only solids"},
+      {{"mover: bodies"}, {"a catheter pushed", "contact of a solid"}, "there are only bodies"},
+      {{"mover: catheter"}, {"contact of a"}, "there is only a catheter"},
+      {{"motion: rest"}, {"a step in slices", "walls that were stopped"}, "walls are at rest"},
+      {{"response: stop"},
+       {"a step not finished", "more than three contacts"},
+       "a particle stops at its first contact"},
+      {{"ranks: off"}, {"a simulation shared by cells"}, "there is one process"},
+      {{"spheres: off"}, {"a sphere in a wall"}, "there are no spheres"},
+      {{"throws: off"}, {"a call that threw"}, "nothing throws"},
+      {{"a Steiner point"},
+       {"a replay", "a simulation shared by cells"},
+       "replays make these points anew; ranks refuse them"},
+      {{"edit: none", "edit: rebuild"}, {"an edit refused", "a solid stuck"}, "nothing is edited"},
+      {{"edit: none"}, {"an edit just made"}, "nothing is edited"},
+  };
+  return list;
+}
+
+bool is_one(const std::vector<std::string_view>& starts, const std::string& name) {
+  return std::any_of(starts.begin(), starts.end(), [&](std::string_view start) { return name.starts_with(start); });
+}
+bool cannot_be(const std::string& a, const std::string& b) {
+  return std::any_of(impossible().begin(), impossible().end(), [&](const Impossible& pair) {
+    return (is_one(pair.one, a) && is_one(pair.others, b)) || (is_one(pair.one, b) && is_one(pair.others, a));
+  });
+}
+
 }  // namespace
 
 std::string_view name_of(Mark e) {
@@ -107,7 +152,7 @@ std::string table_of(const Counts& counts) {
     std::uint64_t least = ~std::uint64_t{0};
     std::size_t rarest = i;
     for (std::size_t j = 0; j < all.size(); ++j) {
-      if (all[i].group == all[j].group) continue;
+      if (all[i].group == all[j].group || cannot_be(all[i].name, all[j].name)) continue;
       const std::uint64_t both = counts.pairs[std::min(i, j)][std::max(i, j)];
       if (both == 0 && i < j) never += fmt::format("  {} / {}\n", all[i].name, all[j].name);
       if (both >= least) continue;
@@ -116,7 +161,11 @@ std::string table_of(const Counts& counts) {
     }
     text += fmt::format("| {} | {} | {} | {} |\n", all[i].name, counts.pairs[i][i], all[rarest].name, least);
   }
-  return text + "\nPairs that were never on together:\n" + (never.empty() ? "  none\n" : never);
+  text += "\nPairs that were never on together:\n" + (never.empty() ? "  none\n" : never);
+  text += "\nPairs that cannot be:\n";
+  for (const Impossible& pair : impossible())
+    text += fmt::format("- {} with {}: {}.\n", fmt::join(pair.one, ", "), fmt::join(pair.others, ", "), pair.why);
+  return text;
 }
 
 }  // namespace dartcast::soak

@@ -60,6 +60,13 @@ class SimulationMover : public Mover {
     for (std::size_t i = 0; i < simulation_->catheter_count(); ++i)
       if (simulation_->catheter_step(i).pushed != 0.0) seen.note(Mark::pushed_catheter);
     if (!simulation_->event_log().changes.empty()) seen.note(Mark::after_edit);
+    for (const EventReport& e : simulation_->event_log().events) {
+      if (e.refused.empty()) seen.note(Mark::after_edit);
+      if (!e.refused.empty()) seen.note(Mark::refused_edit);
+    }
+    if (simulation_->solids() != nullptr && simulation_->solids_step().walls_made < 1.0) seen.note(Mark::walls_stopped);
+    if (simulation_->solids() != nullptr && !simulation_->solids()->stuck().empty()) seen.note(Mark::stuck);
+    if (simulation_->bodies() != nullptr && !simulation_->bodies_step().stuck.empty()) seen.note(Mark::stuck);
     if (plan_.has_field()) seen.note(Mark::field);
     if (plan_.has_inlet()) seen.note(Mark::inlet);
     if (simulation_->statistics_options().any()) seen.note(Mark::statistics);
@@ -97,7 +104,7 @@ class SimulationMover : public Mover {
       const std::string shared = run_twin(&ranks, 1, nullptr);
       if (ranks.rank() == 0 && shared != hash) wrong = "ranks reach another state";
     });
-    return wrong.empty() && plan_.allows_cells() ? compare_by_cells(seen) : wrong;
+    return wrong.empty() && mesh_.dimension() == 3 ? compare_by_cells(seen) : wrong;
   }
 
   // The same scene by one process, and by ranks with some of the cells each.
