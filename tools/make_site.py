@@ -15,16 +15,14 @@ import shutil
 import sys
 
 import check_includes
+import make_bindings
 import read_headers
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "python"))
 
-import make_docs  # noqa: E402
 
 LINK = re.compile(r"(!?\[[^\]]*\])\(([^)\s#]+)((?:#[^)\s]*)?)\)")
 SECTION = re.compile(r"# --- (\w+\.hpp)\n(.*?)# --- end of ", re.DOTALL)
-OWN_SECTIONS = {"errors.hpp": "Exceptions"}  # parts of the Python module that have no header of this name
 PROJECT_PAGES = {"README.md": "readme.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md"}
 
 
@@ -140,7 +138,7 @@ class PythonPages:
         self.docs: dict[str, str] = {}
         for name in read_headers.read_headers(ROOT / "include" / "dartcast"):
             if name.doc:
-                self.docs.setdefault(name.name.replace("::", "."), make_docs.python_text(name.doc))
+                self.docs.setdefault(name.name.replace("::", "."), make_bindings.python_text(name.doc))
 
     def text_of(self, name: str, indent: str) -> list[str]:
         doc = self.docs.get(name, "")
@@ -200,7 +198,7 @@ class PythonPages:
         names = []
         for header, section in SECTION.findall(stub):
             path = ROOT / "include" / "dartcast" / header
-            title = heading_of(path) if path.exists() else OWN_SECTIONS[header]
+            title = heading_of(path)
             name = header.removesuffix(".hpp")
             names.append((name, title))
             page = [f"# {name} (Python)", "", f"{title}.", "", "```{eval-rst}", *self.page(section), "```", ""]

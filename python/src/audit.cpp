@@ -17,8 +17,8 @@ Audit audit_of(const ComplexHandle& h, const ParticlesHandle& p, Threads threads
 }
 
 // All particles of a set in one call.
-void add_all(StateHash& hash, const py::object& given_ids, const ParticlesHandle& p, const py::object& given,
-             const py::object& given_fates) {
+void add_all(StateHash& hash, const Typed<"Integers">& given_ids, const ParticlesHandle& p,
+             const Typed<"Points">& given, const Typed<"Integers | None">& given_fates) {
   const auto velocities = vectors(given, "velocities");
   const auto ids = given_ids.cast<std::vector<std::uint64_t>>();
   const auto fates =
@@ -33,22 +33,15 @@ void add_all(StateHash& hash, const py::object& given_ids, const ParticlesHandle
 }  // namespace
 
 void bind(py::module_& m) {
-  Record<Audit>(m, "Audit")
-      .field("checked", &Audit::checked)
-      .field("failed", &Audit::failed)
-      .field("first", &Audit::first)
-      .def("__iadd__", &Audit::operator+=, py::arg("other"))
-      .finish();
-  m.def("audit", &audit_of, py::arg("complex"), py::arg("particles"), py::arg("threads") = Threads{}, doc("audit"));
+  m.def("audit", &audit_of, about("audit"));
   py::class_<StateHash>(m, "StateHash", doc("StateHash"))
       .def(py::init(
                [](const std::optional<StateHash::Words>& words) { return words ? StateHash(*words) : StateHash(); }),
            py::arg("words") = py::none(), doc("StateHash::StateHash"))
       .def_property_readonly(
-          "words", [](const StateHash& h) { return py::tuple(py::cast(h.words())); },
+          "words", [](const StateHash& h) -> Typed<"tuple[int, int]"> { return py::tuple(py::cast(h.words())); },
           "Two numbers below 2^64, from which StateHash(words) makes an equal hash.")
-      .def("add", &StateHash::add, py::arg("id"), py::arg("state"), py::arg("velocity"), py::arg("fate") = 0,
-           doc("StateHash::add"))
+      .def("add", &StateHash::add, about("StateHash::add"))
       .def("add", &add_all, py::arg("ids"), py::arg("particles"), py::arg("velocities"), py::arg("fates") = py::none(),
            "Adds all particles of a set: one id, velocity and fate (0 where None) for each.")
       .def("__iadd__", &StateHash::operator+=, py::arg("other"))

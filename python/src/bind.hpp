@@ -1,62 +1,30 @@
 // The functions that bind the public headers, one for each: environment::bind() is in environment.cpp, and binds
-// include/dartcast/environment.hpp.
+// include/dartcast/environment.hpp. Those of records are written by tools/make_bindings.py, for all headers.
 #pragma once
 
 #include <pybind11/pybind11.h>
 
+// In this order: a class comes before those that it is a default for.
+// clang-format off
+#define DARTCAST_PARTS(PART) PART(errors) PART(records) PART(mesh_data) PART(mesh_check) PART(mesh_files) \
+  PART(mesh_selection) PART(decompose) PART(generators) PART(mesh_part) PART(predicates) PART(cell_shape) \
+  PART(combinatorial_map) PART(map_edits) PART(cell_complex) PART(complex_edit) PART(cutting) PART(remeshing) \
+  PART(validity) PART(particle_state) PART(step) PART(response) PART(environment) PART(audit) \
+  PART(shared_environment) PART(spheres) PART(trajectory) PART(deformation) PART(vector_field) \
+  PART(surface) PART(solids) PART(bodies) PART(catheter) PART(statistics) PART(simulation) PART(events) \
+  PART(scene) PART(plan) PART(run)
+// clang-format on
+
 namespace dartcast::python {
 
-// clang-format off
-namespace errors { void bind(pybind11::module_& m); }
-namespace ids { void bind(pybind11::module_& m); }
-
-// Meshes.
-namespace mesh_data { void bind(pybind11::module_& m); }
-namespace mesh_check { void bind(pybind11::module_& m); }
-namespace mesh_files { void bind(pybind11::module_& m); }
-namespace mesh_selection { void bind(pybind11::module_& m); }
-namespace decompose { void bind(pybind11::module_& m); }
-namespace generators { void bind(pybind11::module_& m); }
-namespace mesh_part { void bind(pybind11::module_& m); }
-
-// Maps and their edits.
-namespace predicates { void bind(pybind11::module_& m); }
-namespace cell_shape { void bind(pybind11::module_& m); }
-namespace combinatorial_map { void bind(pybind11::module_& m); }
-namespace map_edits { void bind(pybind11::module_& m); }
-namespace cell_complex { void bind(pybind11::module_& m); }
-namespace complex_edit { void bind(pybind11::module_& m); }
-namespace cutting { void bind(pybind11::module_& m); }
-namespace remeshing { void bind(pybind11::module_& m); }
-namespace validity { void bind(pybind11::module_& m); }
-
-// Particles.
-namespace threads { void bind(pybind11::module_& m); }
-namespace particle_state { void bind(pybind11::module_& m); }
-namespace contact { void bind(pybind11::module_& m); }
-namespace step { void bind(pybind11::module_& m); }
-namespace response { void bind(pybind11::module_& m); }
-namespace environment { void bind(pybind11::module_& m); }
-namespace audit { void bind(pybind11::module_& m); }
-namespace shared_environment { void bind(pybind11::module_& m); }
-namespace spheres { void bind(pybind11::module_& m); }
-namespace dynamics { void bind(pybind11::module_& m); }
-namespace trajectory { void bind(pybind11::module_& m); }
-namespace deformation { void bind(pybind11::module_& m); }
-namespace vector_field { void bind(pybind11::module_& m); }
-
-// All that runs.
-namespace statistics { void bind(pybind11::module_& m); }
-namespace surface { void bind(pybind11::module_& m); }
-namespace bodies { void bind(pybind11::module_& m); }
-namespace solids { void bind(pybind11::module_& m); }
-namespace catheter { void bind(pybind11::module_& m); }
-namespace simulation { void bind(pybind11::module_& m); }
-namespace events { void bind(pybind11::module_& m); }
-namespace scene { void bind(pybind11::module_& m); }
-namespace report { void bind(pybind11::module_& m); }
-namespace plan { void bind(pybind11::module_& m); }
-namespace run { void bind(pybind11::module_& m); }
-// clang-format on
+#define DARTCAST_DECLARE(name)     \
+  namespace name {                 \
+  void bind(pybind11::module_& m); \
+  }
+DARTCAST_PARTS(DARTCAST_DECLARE)
+#undef DARTCAST_DECLARE
+namespace records {
+void bind_in_classes(pybind11::module_& m);
+}
 
 }  // namespace dartcast::python

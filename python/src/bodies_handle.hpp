@@ -2,11 +2,13 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "dartcast/bodies.hpp"
 #include "dartcast/catheter.hpp"
 #include "support/handles.hpp"
+#include "support/members.hpp"
 #include "support/python.hpp"
 
 namespace dartcast::python {
@@ -20,6 +22,19 @@ struct SolidHandle {
   T* solid = nullptr;
 
   [[nodiscard]] Use use() const { return Use(*environment->usage, "the Environment of this object"); }
+  /// Calls f(object) while it is in use; to change it, without Python's lock, and where it is of no simulation.
+  template <class F>
+  auto call(const F& f) const {
+    const Use held = use();
+    return f(std::as_const(*solid));
+  }
+  template <class F>
+  auto change(const F& f) const {
+    const Use held = use();
+    T& object = changeable();
+    const pybind11::gil_scoped_release release;
+    return f(object);
+  }
   /// Throws InvalidArgument where it belongs to a simulation, which alone changes it.
   [[nodiscard]] T& changeable() const {
     if (!own) throw InvalidArgument("this object belongs to a simulation, which alone steps and changes it");
@@ -31,7 +46,7 @@ using CatheterHandle = SolidHandle<Catheter>;
 
 /// The object and its environment move together, to positions of all points: T::move_with().
 template <class T>
-double move_with(SolidHandle<T>& self, const pybind11::object& given) {
+double move_with(SolidHandle<T>& self, const Typed<"Points">& given) {
   const auto x = vectors(given, "positions");
   const std::vector<Vec3> positions(x.begin(), x.end());
   const Use use = self.use();

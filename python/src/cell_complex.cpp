@@ -2,8 +2,7 @@
 #include "dartcast/cell_complex.hpp"
 
 #include "bind.hpp"
-#include "support/map_checks.hpp"
-#include "support/meshes.hpp"
+#include "support/members.hpp"
 #include "support/python.hpp"
 
 namespace py = pybind11;
@@ -23,7 +22,7 @@ std::shared_ptr<ComplexHandle> copy_of(const ComplexHandle& h) {
 }
 
 // Takes the next positions, as Environment::move() does: those that a move gives.
-void move(const ComplexHandle& h, const py::object& given) {
+void move(const ComplexHandle& h, const Typed<"Points">& given) {
   const auto points = vectors(given, "points");
   const Use use(*h.usage, "the complex (an edit of it may be open)");
   if (h.changeable == nullptr)
@@ -39,19 +38,9 @@ void move(const ComplexHandle& h, const py::object& given) {
 }
 
 void bind_positions(Class& c) {
-  const auto copy = [](std::span<const Vec3> x) { return std::vector<Vec3>(x.begin(), x.end()); };
-  c.def_property_readonly(
-      "positions",
-      [copy](const ComplexHandle& h) {
-        return without_writing(py::cast(read(h, [&](const CellComplex& x) { return copy(x.positions()); })));
-      },
-      doc("CellComplex::positions"));
-  c.def_property_readonly(
-      "previous_positions",
-      [copy](const ComplexHandle& h) {
-        return without_writing(py::cast(read(h, [&](const CellComplex& x) { return copy(x.previous_positions()); })));
-      },
-      "Positions before the last move(); equal to positions before the first.");
+  property(c, "positions", &CellComplex::positions);
+  property(c, "previous_positions", &CellComplex::previous_positions,
+           "Positions before the last move(); equal to positions before the first.");
   c.def("move", &move, py::arg("points"),
         "Gives the points new positions: float64 (point_count, 3). Steiner points follow. No vertex is checked: see "
         "check_validity(). Raises InvalidArgument where the number is another, or the complex belongs to an "
@@ -65,43 +54,24 @@ void bind_positions(Class& c) {
 }
 
 void bind_simplices(Class& c) {
-  const auto def = [&c](const char* name, const char* text, auto f) {
-    c.def(
-        name,
-        [f](const ComplexHandle& h, SimplexId s) {
-          return read(h, [&](const CellComplex& x) {
-            expect_simplex(x.map(), s);
-            return f(x, s);
-          });
-        },
-        py::arg("s"), text);
-  };
-  const auto array = [](const Corners& corners) { return array_of(std::span<const Vec3>(corners)); };
-  def("vertices", doc("CellComplex::vertices"), [](const CellComplex& x, SimplexId s) {
-    const auto v = x.vertices(s);
-    return std::vector<Vertex>(v.begin(), v.end());
-  });
-  def("corners", "The positions of a simplex's corners: float64 (4, 3).",
-      [array](const CellComplex& x, SimplexId s) { return array(x.corners(s)); });
-  def("previous_corners", "The positions of a simplex's corners before the last move: float64 (4, 3).",
-      [array](const CellComplex& x, SimplexId s) { return array(x.previous_corners(s)); });
+  method(c, "vertices", &CellComplex::vertices);
+  c.def("corners",
+        calling<ComplexHandle>(static_cast<Corners (CellComplex::*)(SimplexId) const>(&CellComplex::corners)),
+        py::arg("s"), "The positions of a simplex's corners: float64 (4, 3).");
+  method(c, "previous_corners", &CellComplex::previous_corners,
+         "The positions of a simplex's corners before the last move: float64 (4, 3).");
 }
 
 void bind_sizes(Class& c) {
-  const auto def = [&c](const char* name, const char* text, auto f) {
-    c.def_property_readonly(
-        name, [f](const ComplexHandle& h) { return read(h, f); }, text);
-  };
-  def("point_count", doc("CellComplex::point_count"), [](const CellComplex& x) { return x.point_count(); });
-  def("simplex_count", "The number of implicit simplices.", [](const CellComplex& x) { return x.simplex_count(); });
-  def("steiner_point_count", "The number of Steiner points.",
-      [](const CellComplex& x) { return x.steiner_point_count(); });
-  def("bytes", doc("CellComplex::bytes"), [](const CellComplex& x) { return x.bytes(); });
-  def("invalid_cells", "Cells that no Steiner point made positive, as a list of InvalidCell.",
-      [](const CellComplex& x) { return x.invalid_cells(); });
+  property(c, "point_count", &CellComplex::point_count);
+  property(c, "simplex_count", &CellComplex::simplex_count, "The number of implicit simplices.");
+  property(c, "steiner_point_count", &CellComplex::steiner_point_count, "The number of Steiner points.");
+  property(c, "bytes", &CellComplex::bytes);
+  property(c, "invalid_cells", &CellComplex::invalid_cells,
+           "Cells that no Steiner point made positive, as a list of InvalidCell.");
 }
 
-py::object mesh_of(const ComplexHandle& h, bool with_vertices) {
+Typed<"MeshData or tuple[MeshData, NDArray[uint32]]"> mesh_of(const ComplexHandle& h, bool with_vertices) {
   std::vector<Vertex> vertices;
   MeshData mesh = read_long(h, [&](const CellComplex& x) { return to_mesh(x, &vertices); });
   py::object made = py::cast(std::move(mesh));
@@ -112,14 +82,9 @@ py::object mesh_of(const ComplexHandle& h, bool with_vertices) {
 }  // namespace
 
 void bind(py::module_& m) {
-  Record<InvalidCell>(m, "InvalidCell")
-      .field("cell", &InvalidCell::cell)
-      .field("simplex", &InvalidCell::simplex)
-      .field("message", &InvalidCell::message)
-      .finish();
   m.def(
-      "raised", [](const Corners& v) { return array_of(std::span<const Vec3>(raised(v))); }, py::arg("v"),
-      (std::string(doc("raised")) + "\n\nv: four points. Returns float64 (4, 3).").c_str());
+      "raised", [](const Corners& v) { return array_of(std::span<const Vec3>(raised(v))); },
+      about("raised", "v: four points. Returns float64 (4, 3)."));
   Class c(m, "CellComplex", "The cell complex: a map with positions.");
   c.def(py::init([](const MeshData& mesh, Threads threads) {
           check_threads(threads);
@@ -127,11 +92,9 @@ void bind(py::module_& m) {
           const py::gil_scoped_release release;
           return own_complex(CellComplex(checked_mesh(mesh), threads));
         }),
-        py::arg("mesh"), py::arg("threads") = Threads{},
-        (std::string(doc("CellComplex::CellComplex")) + "\n\nThe mesh is taken as check_and_repair() repairs it, and "
-                                                        "is itself unchanged. Raises InvalidMesh where it is "
-                                                        "refused.")
-            .c_str());
+        about("CellComplex::CellComplex",
+              "The mesh is taken as check_and_repair() repairs it, and is itself unchanged. Raises InvalidMesh where "
+              "it is refused."));
   c.def_property_readonly(
       "map", [](const ComplexHandle& h) { return std::make_shared<MapHandle>(map_of(h)); },
       "The map. It can be read; ComplexEdit changes it.");
@@ -142,8 +105,7 @@ void bind(py::module_& m) {
   c.def("__deepcopy__", [](const ComplexHandle& h, const py::dict& /*memo*/) { return copy_of(h); });
   m.def("to_mesh", &mesh_of, py::arg("complex"), py::arg("with_vertices") = false,
         "The current cells, pool by pool, with their free marks and their `source` as in the map. Points: the vertices "
-        "that "
-        "they use, at their positions, without Steiner points. There are no regions, patches or data. With "
+        "that they use, at their positions, without Steiner points. There are no regions, patches or data. With "
         "with_vertices: (mesh, the vertex of each point). Cost: linear.");
 }
 

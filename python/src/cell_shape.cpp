@@ -1,8 +1,6 @@
 // Binds dartcast/cell_shape.hpp. A shape in Python is a copy of that of the cell.
 #include "dartcast/cell_shape.hpp"
 
-#include <algorithm>
-
 #include "bind.hpp"
 #include "support/map_checks.hpp"
 #include "support/python.hpp"
@@ -53,11 +51,11 @@ void bind_sizes(Class& c) {
       "key", [](const Shape& s) { return s.key(); }, "The ShapeKey: a copy.");
   c.def_property_readonly("bytes", &Shape::bytes, "Size in memory.");
   c.def_property_readonly(
-      "simplices", [](const Shape& s) { return read_only(array_of(std::span<const ImplicitSimplex>(s.simplices()))); },
+      "simplices",
+      [](const Shape& s) { return read_only<py::array>(array_of(std::span<const ImplicitSimplex>(s.simplices()))); },
       "The implicit simplices: a structured array with `vertex` (4), the local numbers of the corners, and `across` "
-      "(4): "
-      "what is beyond the facet opposite to each. `index` is a simplex, or 0x8000 + a face; `place` is a facet of that "
-      "simplex, or a triangle of the face's fan.");
+      "(4): what is beyond the facet opposite to each. `index` is a simplex, or 0x8000 + a face; `place` is a facet of "
+      "that simplex, or a triangle of the face's fan.");
 }
 
 void bind_darts(Class& c) {
@@ -86,50 +84,30 @@ void bind_darts(Class& c) {
 }
 
 void bind_fans(Class& c) {
-  c.def("triangle_count", of_face(&Shape::triangle_count), py::arg("face"), doc("Shape::triangle_count"));
+  c.def("triangle_count", of_face(&Shape::triangle_count), about("Shape::triangle_count"));
   c.def(
       "triangle",
       [](const Shape& s, Number face, Number t) {
         expect_triangle(s, face, t);
         return s.triangle(face, t);
       },
-      py::arg("face"), py::arg("t"), doc("Shape::triangle"));
+      about("Shape::triangle"));
   c.def(
       "triangle_from_other_side",
       [](const Shape& s, Number face, Number t) {
         expect_triangle(s, face, t);
         return s.triangle_from_other_side(face, t);
       },
-      py::arg("face"), py::arg("t"), doc("Shape::triangle_from_other_side"));
+      about("Shape::triangle_from_other_side"));
   c.def(
       "entry",
       [](const Shape& s, Number face, Number t) {
         expect_triangle(s, face, t);
         return s.entry(face, t);
       },
-      py::arg("face"), py::arg("t"), doc("Shape::entry"));
-  c.def("face_of_point", &Shape::face_of_point, py::arg("point"), doc("Shape::face_of_point"));
-  c.def("feature", &feature, py::arg("points"), doc("Shape::feature"));
-}
-
-void bind_keys(py::module_& m) {
-  auto key = Record<ShapeKey>(m, "ShapeKey")
-                 .field("corner_count", &ShapeKey::corner_count)
-                 .field("apex", &ShapeKey::apex)
-                 .field("has_point", &ShapeKey::has_point)
-                 .field("faces", &ShapeKey::faces)
-                 .finish();
-  Record<ShapeKey::Face>(key, "Face", "ShapeKey::Face")
-      .field("corners", &ShapeKey::Face::corners)
-      .field("has_point", &ShapeKey::Face::has_point)
-      .finish();
-  Record<Across>(m, "Across")
-      .field("index", &Across::index)
-      .field("place", &Across::place)
-      .def_property_readonly("outer", &Across::outer, "Whether it is a triangle of a face.")
-      .def_property_readonly("face", &Across::face, "The face of the triangle.")
-      .finish()
-      .attr("OUTER_BIT") = Across::outer_bit;
+      about("Shape::entry"));
+  c.def("face_of_point", &Shape::face_of_point, about("Shape::face_of_point"));
+  c.def("feature", &feature, about("Shape::feature"));
 }
 
 }  // namespace
@@ -137,13 +115,8 @@ void bind_keys(py::module_& m) {
 void bind(py::module_& m) {
   PYBIND11_NUMPY_DTYPE(Across, index, place);
   PYBIND11_NUMPY_DTYPE(ImplicitSimplex, vertex, across);
-  bind_keys(m);
   Class c(m, "Shape", doc("Shape"));
-  c.def(py::init<ShapeKey>(), py::arg("key"), doc("Shape::Shape"));
-  Record<Shape::Feature>(c, "Feature", "Shape::Feature")
-      .field("kind", &Shape::Feature::kind)
-      .field("dart", &Shape::Feature::dart)
-      .finish();
+  c.def(py::init<ShapeKey>(), about("Shape::Shape"));
   bind_sizes(c);
   bind_darts(c);
   bind_fans(c);

@@ -3,8 +3,7 @@
 #include "dartcast/combinatorial_map.hpp"
 
 #include "bind.hpp"
-#include "support/map_checks.hpp"
-#include "support/meshes.hpp"
+#include "support/members.hpp"
 #include "support/python.hpp"
 
 namespace py = pybind11;
@@ -48,109 +47,71 @@ std::shared_ptr<Shape> shape_copy(const Shape& shape) { return std::make_shared<
 
 void bind_view(py::module_& m) {
   using Number = std::uint16_t;
-  const auto at_face = [](const CellView& v, Number face) { expect_number(face, v.shape().face_count(), "face"); };
-  py::class_<ViewHandle>(m, "CellView", "A cell of a map. Raises InvalidArgument once an edit has replaced the cell.")
-      .def_property_readonly(
-          "shape", [](const ViewHandle& h) { return h.look([](const CellView& v) { return shape_copy(v.shape()); }); },
-          "The cell's Shape: a copy.")
-      .def(
-          "vertex",
-          [](const ViewHandle& h, Number local) {
-            return h.look([&](const CellView& v) {
-              expect_number(local, v.shape().point_count(), "point");
-              return v.vertex(local);
-            });
-          },
-          py::arg("local"), "The vertex with a local number.")
-      .def_property_readonly(
-          "vertices",
-          [](const ViewHandle& h) { return h.look([](const CellView& v) { return array_of(v.vertices()); }); },
-          "The vertices by their local numbers: uint32 (n,).")
-      .def_property_readonly(
-          "is_free", [](const ViewHandle& h) { return h.look([](const CellView& v) { return v.is_free(); }); },
-          "Whether particles may enter the cell.")
-      .def_property_readonly(
-          "version", [](const ViewHandle& h) { return h.cell.version; }, "That of the cell's handle.")
-      .def(
-          "neighbour",
-          [at_face](const ViewHandle& h, Number face) {
-            return h.look([&](const CellView& v) {
-              at_face(v, face);
-              return v.neighbour(face);
-            });
-          },
-          py::arg("face"), doc("CellView::neighbour"))
-      .def(
-          "neighbour_face",
-          [at_face](const ViewHandle& h, Number face) {
-            return h.look([&](const CellView& v) {
-              at_face(v, face);
-              if (!v.neighbour(face).valid()) throw InvalidArgument("the face has no neighbour");
-              return v.neighbour_face(face);
-            });
-          },
-          py::arg("face"), doc("CellView::neighbour_face"))
-      .def(
-          "is_wall",
-          [at_face](const ViewHandle& h, Number face) {
-            return h.look([&](const CellView& v) {
-              at_face(v, face);
-              return v.is_wall(face);
-            });
-          },
-          py::arg("face"), doc("CellView::is_wall"));
+  py::class_<ViewHandle> c(m, "CellView",
+                           "A cell of a map. Raises InvalidArgument once an edit has replaced the cell.");
+  const auto read_only_of = [&c](const char* name, const char* text, auto f) {
+    c.def_property_readonly(
+        name, [f](const ViewHandle& h) { return h.look(f); }, text);
+  };
+  read_only_of("shape", "The cell's Shape: a copy.", [](const CellView& v) { return shape_copy(v.shape()); });
+  read_only_of("vertices", "The vertices by their local numbers: uint32 (n,).",
+               [](const CellView& v) { return array_of(v.vertices()); });
+  read_only_of("is_free", "Whether particles may enter the cell.", [](const CellView& v) { return v.is_free(); });
+  c.def_property_readonly(
+      "version", [](const ViewHandle& h) { return h.cell.version; }, "That of the cell's handle.");
+  c.def(
+      "vertex",
+      [](const ViewHandle& h, Number local) {
+        return h.look([&](const CellView& v) {
+          expect_number(local, v.shape().point_count(), "point");
+          return v.vertex(local);
+        });
+      },
+      py::arg("local"), "The vertex with a local number.");
+  const auto of_face = [&c](const char* name, auto f) {
+    c.def(
+        name,
+        [f](const ViewHandle& h, Number face) {
+          return h.look([&](const CellView& v) {
+            expect_number(face, v.shape().face_count(), "face");
+            return f(v, face);
+          });
+        },
+        about(std::string("CellView::") + name));
+  };
+  of_face("neighbour", [](const CellView& v, Number face) { return or_none(v.neighbour(face)); });
+  of_face("neighbour_face", [](const CellView& v, Number face) {
+    if (!v.neighbour(face).valid()) throw InvalidArgument("the face has no neighbour");
+    return v.neighbour_face(face);
+  });
+  of_face("is_wall", [](const CellView& v, Number face) { return v.is_wall(face); });
 }
 
 void bind_darts(Class& c) {
-  const auto def = [&c](const char* name, const char* text, auto f) {
-    c.def(
-        name,
-        [f](const MapHandle& h, Dart d) {
-          return read(h, [&](const Map& map) {
-            expect_dart(map, d);
-            return f(map, d);
-          });
-        },
-        py::arg("d"), text);
-  };
-  def("phi1", "The next dart of the face.", [](const Map& map, Dart d) { return map.phi1(d); });
-  def("phi_1", "The dart before it in the face.", [](const Map& map, Dart d) { return map.phi_1(d); });
-  def("phi2", doc("CombinatorialMap::phi2"), [](const Map& map, Dart d) { return map.phi2(d); });
-  def("phi3", doc("CombinatorialMap::phi3"), [](const Map& map, Dart d) { return map.phi3(d); });
-  def("alpha1", doc("CombinatorialMap::alpha1"), [](const Map& map, Dart d) { return map.alpha1(d); });
-  def("origin", "The vertex that the dart starts from.", [](const Map& map, Dart d) { return map.origin(d); });
-  def("face", "The face of the dart.", [](const Map& map, Dart d) { return map.face(d); });
-  def("flat", "Marks that edits left at the dart.", [](const Map& map, Dart d) { return map.flat(d); });
+  method(c, "phi1", &Map::phi1, "The next dart of the face.");
+  method(c, "phi_1", &Map::phi_1, "The dart before it in the face.");
+  method(
+      c, "phi2", +[](const Map& map, Dart d) { return or_none(map.phi2(d)); });
+  method(
+      c, "phi3", +[](const Map& map, Dart d) { return or_none(map.phi3(d)); });
+  method(
+      c, "alpha1", +[](const Map& map, Dart d) { return or_none(map.alpha1(d)); });
+  method(c, "origin", &Map::origin, "The vertex that the dart starts from.");
+  method(c, "face", &Map::face, "The face of the dart.");
+  method(c, "flat", &Map::flat, "Marks that edits left at the dart.");
 }
 
 void bind_faces(Class& c) {
-  const auto def = [&c](const char* name, auto f) {
-    c.def(
-        name,
-        [f](const MapHandle& h, CellFace face) {
-          return read(h, [&](const Map& map) {
-            expect_face(map, face);
-            return f(map, face);
-          });
-        },
-        py::arg("f"), doc(std::string("CombinatorialMap::") + name));
-  };
-  def("opposite", [](const Map& map, CellFace f) { return map.opposite(f); });
-  def("point", [](const Map& map, CellFace f) { return map.point(f); });
-  def("patch", [](const Map& map, CellFace f) { return map.patch(f); });
-  c.def(
-      "patch",
-      [](const MapHandle& h, const std::string& name) {
-        return read(h, [&](const Map& map) { return map.patch(name); });
-      },
-      py::arg("name"), doc("CombinatorialMap::patch"));
-  c.def_property_readonly(
-      "patch_names", [](const MapHandle& h) { return read(h, [](const Map& map) { return map.patch_names(); }); },
-      doc("CombinatorialMap::patch_names"));
-  c.def(
-      "wall_face_count",
-      [](const MapHandle& h) { return read_long(h, [](const Map& map) { return map.wall_face_count(); }); },
-      doc("CombinatorialMap::wall_face_count"));
+  method(
+      c, "opposite", +[](const Map& map, CellFace f) { return or_none(map.opposite(f)); });
+  method(
+      c, "point", +[](const Map& map, CellFace f) { return or_none(map.point(f)); });
+  c.def("patch", calling<MapHandle>(static_cast<Patch (Map::*)(CellFace) const>(&Map::patch)), py::arg("f"),
+        doc("CombinatorialMap::patch"));
+  c.def("patch", calling<MapHandle>(+[](const Map& map, std::string name) { return map.patch(name); }),
+        py::arg("name"));
+  property(c, "patch_names", &Map::patch_names);
+  long_method(c, "wall_face_count", &Map::wall_face_count);
 }
 
 // One question about one cell, or about an array of cells.
@@ -158,7 +119,8 @@ template <class Number, class Function>
 void def_of_cells(Class& c, const char* name, const std::string& text, const Function& f) {
   c.def(
       name,
-      [f](const MapHandle& h, const py::object& given) -> py::object {
+      [f](const MapHandle& h, const Typed<"Cell or Integers">& given)
+          -> Either<decltype(f(std::declval<const Map&>(), Cell{})), py::array_t<Number>> {
         if (!py::isinstance<py::array>(given)) {
           const auto cell = given.cast<Cell>();
           return read(h, [&](const Map& map) {
@@ -199,25 +161,12 @@ void bind_cells(Class& c) {
         });
       },
       py::arg("c"), "The Shape of a cell: a copy.");
+  c.def("contains", calling<MapHandle>(static_cast<bool (Map::*)(CellHandle) const>(&Map::contains)), py::arg("h"));
   c.def(
       "contains",
-      [](const MapHandle& h, const CellHandle& cell) {
-        return read(h, [&](const Map& map) { return map.contains(cell); });
-      },
-      py::arg("h"));
-  c.def(
-      "contains",
-      [](const MapHandle& h, Cell cell) { return read(h, [&](const Map& map) { return map.contains(cell); }); },
+      [](const MapHandle& h, Cell cell) { return h.call([&](const Map& map) { return map.contains(cell); }); },
       py::arg("c"), "Whether there is such a cell. Of a CellHandle: whether it is still the same cell.");
-  c.def(
-      "handle",
-      [](const MapHandle& h, Cell cell) {
-        return read(h, [&](const Map& map) {
-          expect_cell(map, cell);
-          return map.handle(cell);
-        });
-      },
-      py::arg("c"), "The handle of a cell. Raises InvalidArgument where there is no such cell.");
+  method(c, "handle", &Map::handle, "The handle of a cell. Raises InvalidArgument where there is no such cell.");
   def_of_cells<std::uint8_t>(c, "type", "The CellType of a cell.",
                              [](const Map& map, Cell cell) { return map.type(cell); });
   def_of_cells<std::uint32_t>(c, "source", doc("CombinatorialMap::source"),
@@ -226,9 +175,7 @@ void bind_cells(Class& c) {
                      [](const Map& map, Cell cell) { return map.is_free(cell); });
   def_of_cells<bool>(c, "has_flat", doc("CombinatorialMap::has_flat"),
                      [](const Map& map, Cell cell) { return map.has_flat(cell); });
-  c.def(
-      "cells", [](const MapHandle& h) { return read_long(h, [](const Map& map) { return map.cells(); }); },
-      "All cells, pool by pool: uint32 (n,).");
+  long_method(c, "cells", &Map::cells, "All cells, pool by pool: uint32 (n,).");
   c.def(
       "set_free",
       [](const MapHandle& h, Cell cell, bool free) {
@@ -237,53 +184,36 @@ void bind_cells(Class& c) {
         expect_cell(map, cell);
         map.set_free(cell, free);
       },
-      py::arg("c"), py::arg("free"), doc("CombinatorialMap::set_free"));
+      about("CombinatorialMap::set_free"));
 }
 
 void bind_sizes(Class& c) {
-  c.def_property_readonly(
-      "dimension", [](const MapHandle& h) { return read(h, [](const Map& map) { return map.dimension(); }); },
-      doc("CombinatorialMap::dimension"));
+  property(c, "dimension", &Map::dimension);
   c.def(
       "cell_count",
       [](const MapHandle& h, std::optional<std::uint32_t> pool) {
         if (pool) expect_pool(*pool);
-        return read(h, [&](const Map& map) { return pool ? map.cell_count(*pool) : map.cell_count(); });
+        return h.call([&](const Map& map) { return pool ? map.cell_count(*pool) : map.cell_count(); });
       },
       py::arg("pool") = py::none(), "The number of cells, of all or of one pool.");
-  c.def(
-      "slot_count",
-      [](const MapHandle& h, std::uint32_t pool) {
-        expect_pool(pool);
-        return read(h, [&](const Map& map) { return map.slot_count(pool); });
-      },
-      py::arg("pool"), doc("CombinatorialMap::slot_count"));
-  c.def(
-      "type_of",
-      [](const MapHandle& h, std::uint32_t pool) {
-        expect_pool(pool);
-        return read(h, [&](const Map& map) { return map.type_of(pool); });
-      },
-      py::arg("pool"), doc("CombinatorialMap::type_of"));
-  c.def_property_readonly(
-      "vertex_count", [](const MapHandle& h) { return read(h, [](const Map& map) { return map.vertex_count(); }); },
-      doc("CombinatorialMap::vertex_count"));
+  const auto of_pool = [&c](const char* name, auto f) {
+    c.def(
+        name,
+        [f](const MapHandle& h, std::uint32_t pool) {
+          expect_pool(pool);
+          return h.call([&](const Map& map) { return (map.*f)(pool); });
+        },
+        about(std::string("CombinatorialMap::") + name));
+  };
+  of_pool("slot_count", &Map::slot_count);
+  of_pool("type_of", &Map::type_of);
+  property(c, "vertex_count", &Map::vertex_count);
   c.def(
       "is_vertex",
-      [](const MapHandle& h, Vertex v) { return read(h, [&](const Map& map) { return map.is_vertex(v); }); },
-      py::arg("v"), doc("CombinatorialMap::is_vertex"));
-  c.def(
-      "may_touch_wall",
-      [](const MapHandle& h, Vertex v) {
-        return read(h, [&](const Map& map) {
-          expect_vertex(map, v);
-          return map.may_touch_wall(v);
-        });
-      },
-      py::arg("v"), doc("CombinatorialMap::may_touch_wall"));
-  c.def_property_readonly(
-      "bytes", [](const MapHandle& h) { return read_long(h, [](const Map& map) { return map.bytes(); }); },
-      "Size in memory.");
+      [](const MapHandle& h, Vertex v) { return h.call([&](const Map& map) { return map.is_vertex(v); }); },
+      about("CombinatorialMap::is_vertex"));
+  method(c, "may_touch_wall", &Map::may_touch_wall);
+  property(c, "bytes", &Map::bytes, "Size in memory.");
 }
 
 // Two maps, or one map twice.
@@ -302,11 +232,7 @@ void bind(py::module_& m) {
       m, "CombinatorialMap",
       "The combinatorial map: darts with phi1, phi2, phi3 over convex cells, free or blocked. It has no coordinates.");
   c.attr("GENERAL_POOL") = Map::general_pool;
-  c.def_static("pool_of", &Map::pool_of, py::arg("type"), doc("CombinatorialMap::pool_of"));
-  Record<Map::Flat>(c, "Flat", "CombinatorialMap::Flat")
-      .field("straight", &Map::Flat::straight)
-      .field("coplanar", &Map::Flat::coplanar)
-      .finish();
+  c.def_static("pool_of", &Map::pool_of, about("CombinatorialMap::pool_of"));
   c.def(py::init([](const MeshData& mesh) {
           const MeshUse use(mesh);
           const py::gil_scoped_release release;
@@ -314,8 +240,7 @@ void bind(py::module_& m) {
         }),
         py::arg("mesh"),
         "Builds the map of a mesh, as check_and_repair() repairs it; the mesh itself is unchanged. Raises InvalidMesh "
-        "where "
-        "it is refused. Cost: linear, except for sorting.");
+        "where it is refused. Cost: linear, except for sorting.");
   bind_darts(c);
   bind_faces(c);
   bind_cells(c);

@@ -4,8 +4,7 @@
 
 #include "bind.hpp"
 #include "support/edit_reports.hpp"
-#include "support/edits.hpp"
-#include "support/map_checks.hpp"
+#include "support/members.hpp"
 #include "support/python.hpp"
 
 namespace py = pybind11;
@@ -15,25 +14,8 @@ namespace {
 
 using Class = py::class_<EditHandle, std::shared_ptr<EditHandle>>;
 
-void bind_reports(py::module_& m) {
-  Record<PlacedVertex>(m, "PlacedVertex")
-      .field("vertex", &PlacedVertex::vertex)
-      .field("of", &PlacedVertex::of)
-      .field("weights", &PlacedVertex::weights)
-      .field("offset", &PlacedVertex::offset)
-      .finish();
-  Record<ComplexEditReport>(m, "ComplexEditReport")
-      .field("map", &ComplexEditReport::map)
-      .field("placed", &ComplexEditReport::placed)
-      .field("given_points", &ComplexEditReport::given_points)
-      .field("around", &ComplexEditReport::around)
-      .field("boundary_shift", &ComplexEditReport::boundary_shift)
-      .finish()
-      .def("now", &ComplexEditReport::now, py::arg("c"), doc("ComplexEditReport::now"));
-}
-
-py::array_t<double> updated(const ComplexEditReport& report, std::size_t size, const py::object& given) {
-  const bool is_flat = py::isinstance<py::array>(given) && py::reinterpret_borrow<py::array>(given).ndim() == 1;
+py::array_t<double> updated(const ComplexEditReport& report, std::size_t size, const Typed<"Floats">& given) {
+  const bool is_flat = is_array(given, 1);
   const bool right = py::isinstance<py::array_t<double, py::array::c_style>>(given) &&
                      (is_flat || py::reinterpret_borrow<py::array>(given).ndim() == 2);
   if (!right)
@@ -58,7 +40,7 @@ py::array_t<double> updated(const ComplexEditReport& report, std::size_t size, c
 void bind_positions(Class& c) {
   c.def(
       "position",
-      [](const EditHandle& h, const py::object& v) -> py::object {
+      [](const EditHandle& h, const Typed<"Vertex | Integers">& v) -> py::array_t<double> {
         if (!py::isinstance<py::array>(v)) {
           const auto one = v.cast<Vertex>();
           return py::cast(change(h, [&](ComplexEdit& e) { return e.position(one); }));
@@ -70,8 +52,7 @@ void bind_positions(Class& c) {
           return positions;
         }));
       },
-      py::arg("v"),
-      (std::string(doc("ComplexEdit::position")) + "\n\nOf an array of vertices: float64 (n, 3).").c_str());
+      about("ComplexEdit::position", "Of an array of vertices: float64 (n, 3)."));
   c.def(
       "place", [](const EditHandle& h, Vertex v, const Vec3& x) { change(h, [&](ComplexEdit& e) { e.place(v, x); }); },
       py::arg("v"), py::arg("x"), doc("ComplexEdit::place"));
@@ -106,16 +87,10 @@ void bind_ends(Class& c) {
       py::arg("to"),
       "Undoes everything after the savepoint. Raises InvalidArgument where that is none of this edit, or was itself "
       "undone.");
-  c.def(
-      "refused_cells",
-      [](const EditHandle& h, const std::vector<Cell>& cells, bool keep_faces) {
-        return change(h, [&](ComplexEdit& e) { return e.refused_cells(cells, keep_faces); });
-      },
-      py::arg("cells"), py::arg("keep_faces") = false, doc("ComplexEdit::refused_cells"));
+  method(c, "refused_cells", &ComplexEdit::refused_cells);
   c.def("commit", &commit,
-        (std::string(doc("ComplexEdit::commit")) +
-         "\n\nRaises InvalidArgument in an edit of an environment: that commits it when the function returns.")
-            .c_str());
+        about("ComplexEdit::commit",
+              "Raises InvalidArgument in an edit of an environment: that commits it when the function returns."));
   c.def("__enter__", [](const std::shared_ptr<EditHandle>& h) {
     static_cast<void>(h->open());
     return h;
@@ -129,14 +104,11 @@ void bind_ends(Class& c) {
 }  // namespace
 
 void bind(py::module_& m) {
-  bind_reports(m);
   Class c(m, "ComplexEdit",
-          (std::string(doc("ComplexEdit")) + "\n\nAn edit of a complex of its own is a context manager: leaving its "
-                                             "block without commit() undoes it. While it "
-                                             "is open, the complex can be read through `edit.map` and "
-                                             "`edit.position()` only. An environment gives an edit to "
-                                             "the function of its edit().")
-              .c_str());
+          about("ComplexEdit",
+                "An edit of a complex of its own is a context manager: leaving its block without commit() undoes it. "
+                "While it is open, the complex can be read through `edit.map` and `edit.position()` only. An "
+                "environment gives an edit to the function of its edit()."));
   c.def(py::init([](const std::shared_ptr<ComplexHandle>& complex) {
           auto made = std::make_shared<EditHandle>();
           const py::gil_scoped_release release;
@@ -146,8 +118,7 @@ void bind(py::module_& m) {
         }),
         py::arg("complex").none(false),
         "Opens an edit. Raises InvalidArgument where the complex belongs to an environment, and InUse where another "
-        "edit of "
-        "it is open.");
+        "edit of it is open.");
   c.def_property_readonly(
       "topology",
       [](const std::shared_ptr<EditHandle>& h) {
@@ -161,9 +132,7 @@ void bind(py::module_& m) {
   bind_positions(c);
   bind_ends(c);
   m.def("update_after_edit", &updated, py::arg("report"), py::arg("size"), py::arg("values"),
-        (std::string(doc("update_after_edit")) +
-         "\n\nvalues: float64 (n,) or (n, components). Returns a fresh array of `size` rows.")
-            .c_str());
+        about("update_after_edit", "values: float64 (n,) or (n, components). Returns a fresh array of `size` rows."));
 }
 
 }  // namespace dartcast::python::complex_edit

@@ -4,10 +4,9 @@
 // waits for a frame, or for the end of that thread, has released the lock.
 #include "dartcast/deformation.hpp"
 
-#include <optional>
-
 #include "bind.hpp"
 #include "support/edit_reports.hpp"
+#include "support/members.hpp"
 #include "support/motions.hpp"
 #include "support/python.hpp"
 
@@ -26,45 +25,16 @@ std::shared_ptr<DeformationHandle> make(Deformation&& deformation) {
           }};
 }
 
-void bind_steps(py::module_& m) {
-  bind_enum<DeformationKind>(m, "DeformationKind",
-                             {{"ROTATE", DeformationKind::rotate},
-                              {"SWING", DeformationKind::swing},
-                              {"BEND", DeformationKind::bend},
-                              {"TWIST", DeformationKind::twist},
-                              {"STRETCH", DeformationKind::stretch},
-                              {"PULSE", DeformationKind::pulse},
-                              {"BUMP", DeformationKind::bump},
-                              {"FRAMES", DeformationKind::frames}});
-  m.attr("FRAME_MEMORY") = frame_memory;
-  m.attr("MAX_FRAMES_HELD") = max_frames_held;
-  m.def("deformation_kind", &deformation_kind, py::arg("name"), doc("deformation_kind"));
-  Record<DeformationStep>(m, "DeformationStep")
-      .field("kind", &DeformationStep::kind)
-      .field("amplitude", &DeformationStep::amplitude)
-      .field("period", &DeformationStep::period)
-      .field("axis", &DeformationStep::axis)
-      .field("centre", &DeformationStep::centre)
-      .field("direction", &DeformationStep::direction)
-      .field("length", &DeformationStep::length)
-      .field("wavelength", &DeformationStep::wavelength)
-      .field("field", &DeformationStep::field)
-      .field("path", &DeformationStep::path)
-      .field("times", &DeformationStep::times)
-      .field("frames", &DeformationStep::frames)
-      .field("interpolation", &DeformationStep::interpolation)
-      .field("cycle", &DeformationStep::cycle)
-      .field("reader", &DeformationStep::reader)
-      .finish();
-}
+void bind_steps(py::module_& m) { m.def("deformation_kind", &deformation_kind, about("deformation_kind")); }
 
-py::object positions(const DeformationHandle& h, double time, const py::object& given, Threads threads) {
+Typed<"Points"> positions(const DeformationHandle& h, double time, const Typed<"Points | None">& given,
+                          Threads threads) {
   check_threads(threads);
   const Use use(h.usage, the_deformation);
   py::object out =
       given.is_none()
           ? py::object(py::array_t<double>({static_cast<py::ssize_t>(h.deformation.size()), py::ssize_t{3}}))
-          : given;
+          : py::object(given);
   const std::span<Vec3> written = writable_vectors(out, "out");
   const py::gil_scoped_release release;
   h.deformation.positions(time, written, threads);
@@ -85,12 +55,12 @@ void update_after_edit(DeformationHandle& h, const ComplexEditReport& edit, std:
 void bind(py::module_& m) {
   bind_steps(m);
   py::class_<DeformationHandle, std::shared_ptr<DeformationHandle>> c(m, "Deformation", doc("Deformation"));
-  c.def(py::init([](const std::vector<DeformationStep>& steps, const py::object& given) {
+  c.def(py::init([](const std::vector<DeformationStep>& steps, const Typed<"Points">& given) {
           const auto rest = vectors(given, "rest");
           const py::gil_scoped_release release;
           return make(Deformation(steps, rest));
         }),
-        py::arg("steps"), py::arg("rest"), doc("Deformation::Deformation"));
+        about("Deformation::Deformation"));
   const auto size = [](const DeformationHandle& h) { return h.deformation.size(); };
   c.def("__len__", size);
   c.def_property_readonly("size", size, "The number of positions.");
@@ -101,36 +71,15 @@ void bind(py::module_& m) {
   c.def("__copy__", copy);
   c.def("__deepcopy__", [copy](const DeformationHandle& h, const py::dict& /*memo*/) { return copy(h); });
   c.def(
-      "check_plane",
-      [](DeformationHandle& h) {
-        const Use use(h.usage, the_deformation);
-        const py::gil_scoped_release release;
-        h.deformation.check_plane();
-      },
+      "check_plane", [](DeformationHandle& h) { h.change([](Deformation& d) { d.check_plane(); }); },
       doc("Deformation::check_plane"));
-  c.def("update_after_edit", &update_after_edit, py::arg("edit"), py::arg("size"),
-        doc("Deformation::update_after_edit"));
+  c.def("update_after_edit", &update_after_edit, about("Deformation::update_after_edit"));
+  method(c, "add_pull", &Deformation::add_pull);
   c.def(
-      "add_pull",
-      [](DeformationHandle& h, const py::object& given, double begin, double end) {
-        const auto displacement = vectors(given, "displacement");
-        const Use use(h.usage, the_deformation);
-        const py::gil_scoped_release release;
-        h.deformation.add_pull(displacement, begin, end);
-      },
-      py::arg("displacement"), py::arg("begin"), py::arg("end"), doc("Deformation::add_pull"));
-  c.def(
-      "load_frames",
-      [](const DeformationHandle& h, double time) {
-        const Use use(h.usage, the_deformation);
-        const py::gil_scoped_release release;
-        h.deformation.load_frames(time);
-      },
-      py::arg("time"), doc("Deformation::load_frames"));
+      "load_frames", [](DeformationHandle& h, double time) { h.change([&](Deformation& d) { d.load_frames(time); }); },
+      about("Deformation::load_frames"));
   c.def("positions", &positions, py::arg("time"), py::arg("out") = py::none(), py::arg("threads") = Threads{},
-        (std::string(doc("Deformation::positions")) +
-         "\n\nout: float64 (size, 3), written in place and returned; None: a fresh array.")
-            .c_str());
+        about("Deformation::positions", "out: float64 (size, 3), written in place and returned; None: a fresh array."));
 }
 
 }  // namespace dartcast::python::deformation

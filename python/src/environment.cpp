@@ -10,7 +10,7 @@
 #include "dartcast/mesh_selection.hpp"
 #include "dartcast/validity.hpp"
 #include "support/environments.hpp"
-#include "support/meshes.hpp"
+#include "support/members.hpp"
 #include "support/rows.hpp"
 
 namespace py = pybind11;
@@ -50,19 +50,10 @@ void bind_parts(EnvironmentClass& c) {
         return map;
       },
       "The combinatorial map. It can be read; edit() changes it.");
-  c.def_property_readonly(
-      "positions",
-      [](const EnvironmentHandle& h) {
-        const Use use(*h.usage, "the environment");
-        return read_only(array_of(h.environment->positions()));
-      },
-      "Positions of the mesh's points: float64 (n, 3), a read-only copy.");
+  property(c, "positions", &Environment::positions,
+           "Positions of the mesh's points: float64 (n, 3), a read-only copy.");
   c.def_property(
-      "threads",
-      [](const EnvironmentHandle& h) {
-        const Use use(*h.usage, "the environment");
-        return h.environment->threads();
-      },
+      "threads", calling<EnvironmentHandle>(&Environment::threads),
       [](const EnvironmentHandle& h, Threads threads) {
         const Use use(*h.usage, "the environment");
         Environment& e = h.changeable("set the threads of the simulation");
@@ -71,23 +62,11 @@ void bind_parts(EnvironmentClass& c) {
       },
       "The number of threads that calls use; 0: all of the machine. Results never depend on it. Setting it raises "
       "Error, nothing changed, as check_threads().");
-  c.def_property_readonly(
-      "edit_count",
-      [](const EnvironmentHandle& h) {
-        const Use use(*h.usage, "the environment");
-        return h.environment->edit_count();
-      },
-      "The number of edits so far.");
-  c.def_property_readonly(
-      "last_edit",
-      [](const EnvironmentHandle& h) {
-        const Use use(*h.usage, "the environment");
-        return ComplexEditReport(h.environment->last_edit());
-      },
-      doc("Environment::last_edit"));
+  property(c, "edit_count", &Environment::edit_count, "The number of edits so far.");
+  property(c, "last_edit", &Environment::last_edit);
 }
 
-py::object locate(const EnvironmentHandle& h, const py::object& x) {
+Typed<"Location or Records"> locate(const EnvironmentHandle& h, const Typed<"Vector or Points">& x) {
   const Use use(*h.usage, "the environment");
   if (py::isinstance<py::array>(x) && py::reinterpret_borrow<py::array>(x).ndim() != 1) {
     const auto points = vectors(x, "x");
@@ -107,8 +86,10 @@ py::object locate(const EnvironmentHandle& h, const py::object& x) {
   return py::cast(found);
 }
 
-py::object cast_rays(const EnvironmentHandle& h, const py::object& origins, const py::object& directions,
-                     double max_distance, bool cells) {
+Typed<"Records or tuple[Records, NDArray[uint32], NDArray[uint64]]"> cast_rays(const EnvironmentHandle& h,
+                                                                               const Typed<"Points">& origins,
+                                                                               const Typed<"Points">& directions,
+                                                                               double max_distance, bool cells) {
   const Use use(*h.usage, "the environment");
   const auto starts = vectors(origins, "origins");
   const auto ways = vectors(directions, "directions");
@@ -130,32 +111,17 @@ void bind_queries(EnvironmentClass& c) {
   c.def(
       "cast_rays", &cast_rays, py::arg("origins"), py::arg("directions"),
       py::arg("max_distance") = std::numeric_limits<double>::infinity(), py::arg("cells") = false,
-      (std::string(doc("Environment::cast_rays")) +
-       "\n\norigins, directions: float64 (n, 3). Returns a structured array, one row for each ray: origin (place), "
-       "hit, "
-       "kind, cell, face, triangle, patch, distance, point, normal, invalid_cell. With cells=True a tuple: these rows, "
-       "the cells that all rays pass, and of each ray the first of its cells, with their number at the end.")
-          .c_str());
+      about(
+          "Environment::cast_rays",
+          "origins, directions: float64 (n, 3). Returns a structured array, one row for each ray: origin (place), hit, "
+          "kind, cell, face, triangle, patch, distance, point, normal, invalid_cell. With cells=True a tuple: these "
+          "rows, the cells that all rays pass, and of each ray the first of its cells, with their number at the end."));
   c.def("locate", &locate, py::arg("x"),
-        (std::string(doc("Environment::locate")) +
-         "\n\nx: one point, or float64 (n, 3). Returns a Location; or a structured array: place, kind, simplex, dart, "
-         "cell, dart_cell. NONE stands for no cell.")
-            .c_str());
-  c.def(
-      "validity",
-      [](const EnvironmentHandle& h, std::size_t max_count) {
-        const Use use(*h.usage, "the environment");
-        const py::gil_scoped_release release;
-        return h.environment->validity(max_count);
-      },
-      py::arg("max_count") = 10, doc("Environment::validity"));
-  c.def(
-      "awaits_advance",
-      [](const EnvironmentHandle& h, const ParticlesHandle& p) {
-        const UseBoth use(h, p);
-        return h.environment->awaits_advance(p.particles);
-      },
-      py::arg("particles"), doc("Environment::awaits_advance"));
+        about("Environment::locate",
+              "x: one point, or float64 (n, 3). Returns a Location; or a structured array: place, kind, simplex, dart, "
+              "cell, dart_cell. NONE stands for no cell."));
+  long_method(c, "validity", &Environment::validity);
+  method(c, "awaits_advance", &Environment::awaits_advance);
   c.def(
       "check_advance",
       [](const EnvironmentHandle& h, const ParticlesHandle& p, const StepOptions& options, const std::string& caller) {
@@ -170,17 +136,12 @@ void bind_queries(EnvironmentClass& c) {
 
 void bind(py::module_& m) {
   particles::bind(m);
-  bind_enum<OrphanPolicy>(
-      m, "OrphanPolicy",
-      {{"HOLD", OrphanPolicy::hold}, {"RELOCATE", OrphanPolicy::relocate}, {"ABSORB", OrphanPolicy::absorb}});
-  EnvironmentClass c(
-      m, "Environment",
-      (std::string(doc("Environment")) + "\n\nIt serves one call at a time: a second thread gets InUse.").c_str());
+  EnvironmentClass c(m, "Environment",
+                     about("Environment", "It serves one call at a time: a second thread gets InUse."));
   c.def(py::init(&make), py::arg("mesh"), py::arg("threads") = Threads{}, py::arg("free") = py::none(),
-        (std::string(doc("Environment::Environment")) +
-         "\n\nThe mesh is copied, and stays as it is. free: names of regions whose cells are free, all others are "
-         "blocked (select_free_regions()); None: as the mesh says.")
-            .c_str());
+        about("Environment::Environment",
+              "The mesh is copied, and stays as it is. free: names of regions whose cells are free, all others are "
+              "blocked (select_free_regions()); None: as the mesh says."));
   bind_parts(c);
   bind_queries(c);
   environment_adding::bind(c);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* remedy = "add particles by the simulation";
 
-py::array add(const EnvironmentHandle& h, ParticlesHandle& p, const py::object& given) {
+py::array add(const EnvironmentHandle& h, ParticlesHandle& p, const Typed<"Points">& given) {
   const auto positions = vectors(given, "positions");
   const UseBoth use(h, p);
   std::vector<AddResult> added;
@@ -26,7 +26,7 @@ py::array add(const EnvironmentHandle& h, ParticlesHandle& p, const py::object& 
   return rows_of(added);
 }
 
-py::tuple add_new(const EnvironmentHandle& h, const py::object& given) {
+Typed<"tuple[Particles, Records]"> add_new(const EnvironmentHandle& h, const Typed<"Points">& given) {
   auto made = std::make_shared<ParticlesHandle>();
   const py::array places = add(h, *made, given);
   return py::make_tuple(made, places);
@@ -58,7 +58,8 @@ std::vector<Weights> weights_of(const py::object& given, std::size_t count) {
   return weights;
 }
 
-ParticlesPointer restored(const EnvironmentHandle& h, const py::object& given, const py::object& weights) {
+ParticlesPointer restored(const EnvironmentHandle& h, const Typed<"Records">& given,
+                          const Typed<"Floats | None">& weights) {
   const auto states = states_of(given, "states");
   const auto kept = weights_of(weights, states.size());
   const bool has_held = std::any_of(states.begin(), states.end(), [](const ParticleState& s) { return s.held; });
@@ -75,19 +76,16 @@ ParticlesPointer restored(const EnvironmentHandle& h, const py::object& given, c
 
 void bind(EnvironmentClass& c) {
   c.def("add", &add, py::arg("particles"), py::arg("positions"),
-        (std::string(doc("Environment::add")) +
-         "\n\npositions: float64 (n, 3). Returns a structured array, one row for each position: particle (its index in "
-         "the set; NONE unless the place is free), place, kind, simplex, dart, cell, dart_cell.")
-            .c_str());
+        about("Environment::add",
+              "positions: float64 (n, 3). Returns a structured array, one row for each position: particle (its index "
+              "in the set; NONE unless the place is free), place, kind, simplex, dart, cell, dart_cell."));
   c.def("add", &add_to_simplex, py::arg("particles"), py::arg("simplex"), py::arg("position"));
   c.def("add", &add_new, py::arg("positions"), "Adds to a new set: returns (particles, places).");
-  c.def("add_random", &added_random, py::arg("count"), py::arg("seed") = 1,
-        (std::string(doc("add_random")) + "\n\nReturns a new set.").c_str());
+  c.def("add_random", &added_random, py::arg("count"), py::arg("seed") = 1, about("add_random", "Returns a new set."));
   c.def("restored", &restored, py::arg("states"), py::arg("weights") = py::none(),
-        (std::string(doc("Environment::restored")) +
-         "\n\nstates: as Particles.states gives them. weights: as Particles.held_weights() gives them; None where no "
-         "particle is held.")
-            .c_str());
+        about("Environment::restored",
+              "states: as Particles.states gives them. weights: as Particles.held_weights() gives them; None where no "
+              "particle is held."));
 }
 
 }  // namespace dartcast::python::environment_adding

@@ -5,8 +5,8 @@
 // because they may need what the block writes over.
 #include "bind.hpp"
 #include "dartcast/validity.hpp"
-#include "support/edits.hpp"
 #include "support/environments.hpp"
+#include "support/members.hpp"
 #include "support/rows.hpp"
 
 namespace py = pybind11;
@@ -19,13 +19,13 @@ constexpr const char* remedy = "it is moved by its deformation";
 // A block of next_points().
 struct NextPoints {
   EnvironmentPointer environment;
-  py::array points;
+  py::array_t<double> points;
   bool open = false;
   bool used = false;
 };
 
 // An array over memory of the environment, which it keeps alive; `written` lives as long as the array.
-py::array writable_view(EnvironmentHandle& h, std::span<Vec3> memory) {
+py::array_t<double> writable_view(EnvironmentHandle& h, std::span<Vec3> memory) {
   struct Owner {
     std::shared_ptr<void> environment, written;
   };
@@ -36,7 +36,7 @@ py::array writable_view(EnvironmentHandle& h, std::span<Vec3> memory) {
                              reinterpret_cast<const double*>(memory.data()), owner);
 }
 
-py::array enter(NextPoints& block) {
+py::array_t<double> enter(NextPoints& block) {
   EnvironmentHandle& h = *block.environment;
   const Use use(*h.usage, "the environment");
   h.expect_no_writing("next_points");
@@ -61,7 +61,7 @@ void leave(NextPoints& block, const py::object& raised, const py::object& /*valu
   h.overwritten = false;
 }
 
-void move(EnvironmentHandle& h, const py::object& given) {
+void move(EnvironmentHandle& h, const Typed<"Points">& given) {
   const auto points = vectors(given, "points");
   const Use use(*h.usage, "the environment");
   h.expect_no_writing("move");
@@ -71,7 +71,7 @@ void move(EnvironmentHandle& h, const py::object& given) {
   h.overwritten = false;
 }
 
-double move_until_inverted(EnvironmentHandle& h, const py::object& given, double share) {
+double move_until_inverted(EnvironmentHandle& h, const Typed<"Points">& given, double share) {
   const auto points = vectors(given, "positions");
   if (!(share >= 0.0 && share <= 1.0)) throw InvalidArgument("share: expected a number from 0 to 1");
   const Use use(*h.usage, "the environment");
@@ -83,13 +83,13 @@ double move_until_inverted(EnvironmentHandle& h, const py::object& given, double
   return way;
 }
 
-ComplexEditReport edit(EnvironmentHandle& h, const py::object& make) {
+ComplexEditReport edit(EnvironmentHandle& h, const Typed<"Callable[[ComplexEdit], object]">& make) {
   const Use use(*h.usage, "the environment");
   h.expect_no_writing("edit");
   if (!h.written.expired())
     throw InvalidArgument(
-        "edit: an array of a next_points() block still exists, and an edit may move its memory: "
-        "delete it first (del x), and all views of it");
+        "edit: an array of a next_points() block still exists, and an edit may move its memory: delete it first (del "
+        "x), and all views of it");
   Environment& e = h.changeable("let its events edit it");
   const auto callback = edit_callback(make);
   const py::gil_scoped_release release;
@@ -110,7 +110,7 @@ void bind_next_points(py::module_& m, EnvironmentClass& c) {
   c.def(
       "next_points",
       [](const EnvironmentPointer& h) {
-        return NextPoints{h, py::array(), false, false};
+        return NextPoints{h, {}, false, false};
       },
       "`with environment.next_points() as x:` gives the memory of the next positions, without a copy: float64 (n, 3). "
       "Write all of it: the content is that of two moves ago. In the plane z is not read. At the end of the block x "
@@ -124,35 +124,15 @@ void bind_next_points(py::module_& m, EnvironmentClass& c) {
 
 void bind(py::module_& m, EnvironmentClass& c) {
   bind_next_points(m, c);
-  py::class_<UpdateReport>(m, "UpdateReport", doc("UpdateReport"))
-      .def_readonly("touched", &UpdateReport::touched, doc("UpdateReport::touched"))
-      .def_readonly("located", &UpdateReport::located, doc("UpdateReport::located"))
-      .def_property_readonly(
-          "orphaned", [](const UpdateReport& r) { return rows_of(r.orphaned); },
-          "By particle, as a structured array: particle (its index before any was removed), place (blocked or "
-          "outside), outcome (OrphanPolicy), position (where it was after the edit), distance (from there to where it "
-          "was relocated).");
   c.def("move", &move, py::arg("points"),
         "Copies new positions of all the mesh's points, float64 (n, 3), and makes them current. Every set of particles "
         "must then be advanced once, or update_after_edit() an edit made after this move, before the next move. "
         "advance() takes targets relative to positions before the move. Raises InvalidArgument, nothing moved, where "
         "the number does not match, or in the plane a z is not 0.");
-  c.def(
-      "first_inversion",
-      [](const EnvironmentHandle& h, const py::object& given) {
-        const auto points = vectors(given, "positions");
-        const Use use(*h.usage, "the environment");
-        const py::gil_scoped_release release;
-        return h.environment->first_inversion(points);
-      },
-      py::arg("positions"), doc("Environment::first_inversion"));
-  c.def("move_until_inverted", &move_until_inverted, py::arg("positions"), py::arg("share") = 1.0,
-        doc("Environment::move_until_inverted"));
-  c.def("edit", &edit, py::arg("make"),
-        (std::string(doc("Environment::edit")) + "\n\nmake(edit): gets a ComplexEdit, which is open until it returns.")
-            .c_str());
-  c.def("update_after_edit", &update_after_edit, py::arg("particles"), py::arg("orphaned") = OrphanPolicy::relocate,
-        doc("Environment::update_after_edit"));
+  long_method(c, "first_inversion", &Environment::first_inversion);
+  c.def("move_until_inverted", &move_until_inverted, about("Environment::move_until_inverted"));
+  c.def("edit", &edit, about("Environment::edit", "make(edit): gets a ComplexEdit, which is open until it returns."));
+  c.def("update_after_edit", &update_after_edit, about("Environment::update_after_edit"));
 }
 
 }  // namespace dartcast::python::environment_moves

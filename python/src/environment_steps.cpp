@@ -8,20 +8,17 @@ namespace dartcast::python {
 
 const char* const respond_text =
     "\n\nrespond: None: a particle stops at its first contact. A response (Reflect(0.5, friction=0.1), Slide(), "
-    "Stick(), "
-    "Absorb(), Escape()), WallResponses, or a dict of responses by name or number of the patch, with the general one "
-    "at "
-    "None (without it: Reflect()): needs velocities and dt, and works as respond_with(): velocities, float64 (n, 3), "
-    "and statuses, uint8 (n,) of ParticleStatus or None, are written in place. A ContactCallback of respond_with().\n\n"
-    "A function respond(contacts, walls) answers all contacts of a round at once: the next contact of each particle "
-    "that "
-    "has one. It gets structured arrays as StepReport.contacts and .walls. It returns the displacement of each for the "
-    "rest of the step, relative to the wall: float64 (contacts, 3), where a row of zeros lets the particle stay at the "
-    "wall; or None: all stay; or a tuple of the displacements and bool (contacts,): which run along the wall "
-    "(AfterContact.along).\n\n"
-    "With per_contact=True a function respond(contact, walls, earlier) answers one contact at a time: a Contact and "
-    "lists of WallHit. It returns a displacement, an AfterContact, or None to stay. It is called from several threads, "
-    "one at a time.\n\nAn exception raised in a function comes out of the call, and the particles are as before.";
+    "Stick(), Absorb(), Escape()), WallResponses, or a dict of responses by name or number of the patch, with the "
+    "general one at None (without it: Reflect()): needs velocities and dt, and works as respond_with(): velocities, "
+    "float64 (n, 3), and statuses, uint8 (n,) of ParticleStatus or None, are written in place. A ContactCallback of "
+    "respond_with().\n\nA function respond(contacts, walls) answers all contacts of a round at once: the next contact "
+    "of each particle that has one. It gets structured arrays as StepReport.contacts and .walls. It returns the "
+    "displacement of each for the rest of the step, relative to the wall: float64 (contacts, 3), where a row of zeros "
+    "lets the particle stay at the wall; or None: all stay; or a tuple of the displacements and bool (contacts,): "
+    "which run along the wall (AfterContact.along).\n\nWith per_contact=True a function respond(contact, walls, "
+    "earlier) answers one contact at a time: a Contact and lists of WallHit. It returns a displacement, an "
+    "AfterContact, or None to stay. It is called from several threads, one at a time.\n\nAn exception raised in a "
+    "function comes out of the call, and the particles are as before.";
 
 void expect_positions_before(const EnvironmentHandle& e, const ParticlesHandle& p, const char* call) {
   e.expect_no_writing(call);
@@ -42,9 +39,8 @@ Targets::Targets(const py::object& given, const RespondArguments& arguments, con
 namespace environment_steps {
 namespace {
 
-StepReport advance(const EnvironmentHandle& h, ParticlesHandle& p, const py::object& given, const py::object& respond,
-                   const py::object& velocities, const py::object& statuses, const py::object& dt,
-                   const py::object& acceleration, bool per_contact, const StepOptions& options) {
+StepReport advance(const EnvironmentHandle& h, ParticlesHandle& p, const Typed<"Points">& given,
+                   DARTCAST_RESPOND_PARAMETERS) {
   const RespondArguments arguments{respond, velocities, statuses, dt, acceleration, per_contact};
   const Targets targets(given, arguments);
   const UseBoth use(h, p);
@@ -58,9 +54,7 @@ StepReport advance(const EnvironmentHandle& h, ParticlesHandle& p, const py::obj
 }
 
 std::vector<Trace> trace(const EnvironmentHandle& h, const ParticlesHandle& p, std::size_t particle,
-                         const py::object& given, const py::object& respond, const py::object& velocities,
-                         const py::object& statuses, const py::object& dt, const py::object& acceleration,
-                         bool per_contact, const StepOptions& options) {
+                         const Typed<"Points">& given, DARTCAST_RESPOND_PARAMETERS) {
   const RespondArguments arguments{respond, velocities, statuses, dt, acceleration, per_contact};
   const Targets targets(given, arguments);
   const UseBoth use(h, p);
@@ -76,12 +70,10 @@ std::vector<Trace> trace(const EnvironmentHandle& h, const ParticlesHandle& p, s
 void bind(EnvironmentClass& c) {
   c.def("advance", &advance, py::arg("particles"), py::arg("targets"), DARTCAST_RESPOND_ARGUMENTS,
         (std::string(doc("Environment::advance")) + "\n\ntargets: float64 (n, 3)." + respond_text).c_str());
-  c.def(
-      "trace", &trace, py::arg("particles"), py::arg("particle"), py::arg("targets"), DARTCAST_RESPOND_ARGUMENTS,
-      (std::string(doc("Environment::trace")) +
-       "\n\ntargets: float64 (n, 3). The other arguments are as in advance(), but a function answers one contact at a "
-       "time.")
-          .c_str());
+  c.def("trace", &trace, py::arg("particles"), py::arg("particle"), py::arg("targets"), DARTCAST_RESPOND_ARGUMENTS,
+        about("Environment::trace",
+              "targets: float64 (n, 3). The other arguments are as in advance(), but a function answers one contact at "
+              "a time."));
 }
 
 }  // namespace environment_steps

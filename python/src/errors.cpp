@@ -12,44 +12,29 @@ namespace py = pybind11;
 namespace dartcast::python::errors {
 namespace {
 
-// The classes live as long as the process: a translator may need them until the end.
-struct ErrorClasses {
-  py::handle error, invalid_argument, invalid_mesh, edit_refused, internal_error, in_use, rank_failed;
-};
-ErrorClasses& error_classes() {
-  static ErrorClasses classes;
-  return classes;
-}
-
-py::handle make_error(py::module_& m, const char* name, const char* text, const py::tuple& bases) {
+// The class lives as long as the process: its translator may need it until the end.
+template <class E>
+py::handle bind_error(py::module_& m, const char* name, const char* text, const py::tuple& bases) {
+  static py::handle type;
   const std::string full = std::string("dartcast.") + name;
-  PyObject* made = PyErr_NewExceptionWithDoc(full.c_str(), text, bases.ptr(), nullptr);
-  if (made == nullptr) throw py::error_already_set();
-  m.attr(name) = py::handle(made);
-  return made;
+  type = PyErr_NewExceptionWithDoc(full.c_str(), text, bases.ptr(), nullptr);
+  if (!type) throw py::error_already_set();
+  m.attr(name) = type;
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(std::move(thrown));
+    } catch (const E& e) {
+      PyErr_SetString(type.ptr(), e.what());
+    }
+  });
+  return type;
 }
 
-void translate(std::exception_ptr thrown) {
-  const ErrorClasses& c = error_classes();
-  const auto set = [](py::handle type, const std::exception& e) { PyErr_SetString(type.ptr(), e.what()); };
+// pybind11 would raise RuntimeError, and explain how pybind11 is compiled.
+void translate_cast_error(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(std::move(thrown));
-  } catch (const InUse& e) {
-    set(c.in_use, e);
-  } catch (const InvalidArgument& e) {
-    set(c.invalid_argument, e);
-  } catch (const InvalidMesh& e) {
-    set(c.invalid_mesh, e);
-  } catch (const EditRefused& e) {
-    set(c.edit_refused, e);
-  } catch (const RankFailed& e) {
-    set(c.rank_failed, e);
-  } catch (const InternalError& e) {
-    set(c.internal_error, e);
-  } catch (const Error& e) {
-    set(c.error, e);
   } catch (const py::cast_error&) {
-    // pybind11 would raise RuntimeError, and explain how pybind11 is compiled.
     PyErr_SetString(PyExc_TypeError,
                     "an argument, or the answer of a function that was given, has a wrong type: the docstring of the "
                     "called function names the right ones");
@@ -58,20 +43,21 @@ void translate(std::exception_ptr thrown) {
 
 }  // namespace
 
+// The translator that was registered last is asked first: a class comes after its base.
 void bind(py::module_& m) {
-  ErrorClasses& c = error_classes();
-  c.error = make_error(m, "Error", doc("Error"), py::make_tuple(py::handle(PyExc_Exception)));
-  c.invalid_argument =
-      make_error(m, "InvalidArgument", doc("InvalidArgument"), py::make_tuple(c.error, py::handle(PyExc_ValueError)));
-  c.invalid_mesh = make_error(m, "InvalidMesh", doc("InvalidMesh"), py::make_tuple(c.error));
-  c.edit_refused = make_error(m, "EditRefused", doc("EditRefused"), py::make_tuple(c.error));
-  c.internal_error = make_error(m, "InternalError", doc("InternalError"), py::make_tuple(c.error));
-  c.rank_failed = make_error(m, "RankFailed", doc("RankFailed"), py::make_tuple(c.error));
-  c.in_use = make_error(m, "InUse",
-                        "An object that serves a call is asked for another: by a second thread, or by a response that "
-                        "the call waits for.",
-                        py::make_tuple(c.error));
-  py::register_exception_translator(translate);
+  py::register_exception_translator(translate_cast_error);
+  const py::handle error = bind_error<Error>(m, "Error", doc("Error"), py::make_tuple(py::handle(PyExc_Exception)));
+  const py::tuple bases = py::make_tuple(error);
+  bind_error<InvalidArgument>(m, "InvalidArgument", doc("InvalidArgument"),
+                              py::make_tuple(error, py::handle(PyExc_ValueError)));
+  bind_error<InvalidMesh>(m, "InvalidMesh", doc("InvalidMesh"), bases);
+  bind_error<EditRefused>(m, "EditRefused", doc("EditRefused"), bases);
+  bind_error<InternalError>(m, "InternalError", doc("InternalError"), bases);
+  bind_error<RankFailed>(m, "RankFailed", doc("RankFailed"), bases);
+  bind_error<InUse>(m, "InUse",
+                    "An object that serves a call is asked for another: by a second thread, or by a response that the "
+                    "call waits for.",
+                    bases);
 }
 
 }  // namespace dartcast::python::errors

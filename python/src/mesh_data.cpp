@@ -3,6 +3,7 @@
 
 #include "bind.hpp"
 #include "support/integers.hpp"
+#include "support/map_checks.hpp"
 #include "support/mesh_arrays.hpp"
 #include "support/meshes.hpp"
 #include "support/python.hpp"
@@ -33,7 +34,7 @@ void add_array(py::class_<MeshData, std::shared_ptr<MeshData>>& c, const char* n
   const std::string full = std::string("MeshData.") + name;
   c.def_property(
       name, [member](const MeshData& m) { return read_only(array_of(std::span<const T>(m.*member))); },
-      [member, full](MeshData& m, const py::object& x) {
+      [member, full](MeshData& m, const Typed<"Integers">& x) {
         std::vector<T> values = integers<T>(x, full);
         const MeshUse use(m, true);
         m.*member = std::move(values);
@@ -44,7 +45,7 @@ void add_array(py::class_<MeshData, std::shared_ptr<MeshData>>& c, const char* n
 void add_arrays(py::class_<MeshData, std::shared_ptr<MeshData>>& c) {
   c.def_property(
       "points", [](const MeshData& m) { return read_only(array_of(std::span<const Vec3>(m.points))); },
-      [](MeshData& m, const py::object& x) {
+      [](MeshData& m, const Typed<"Points">& x) {
         const auto points = vectors(x, "MeshData.points");
         const MeshUse use(m, true);
         m.points.assign(points.begin(), points.end());
@@ -57,7 +58,7 @@ void add_arrays(py::class_<MeshData, std::shared_ptr<MeshData>>& c) {
         for (std::size_t i = 0; i < types.size(); ++i) types[i] = static_cast<std::uint8_t>(m.types[i]);
         return read_only(array_of(std::move(types)));
       },
-      [](MeshData& m, const py::object& x) {
+      [](MeshData& m, const Typed<"Integers">& x) {
         std::vector<std::uint8_t> numbers;
         append_integers(x, "MeshData.types", 0, numbers, cell_type_names.size());
         const MeshUse use(m, true);
@@ -77,7 +78,7 @@ void add_arrays(py::class_<MeshData, std::shared_ptr<MeshData>>& c) {
   add_array(c, "baffle_tags", &MeshData::baffle_tags);
   c.def_property(
       "free", [](const MeshData& m) { return read_only(array_of(std::span<const std::uint8_t>(m.free))); },
-      [](MeshData& m, const py::object& x) {
+      [](MeshData& m, const Typed<"Marks">& x) {
         std::vector<std::uint8_t> free;
         for (const std::uint8_t mark : marks(x, "MeshData.free")) free.push_back(mark != 0 ? 1 : 0);
         const MeshUse use(m, true);
@@ -100,7 +101,7 @@ void add_names_and_data(py::class_<MeshData, std::shared_ptr<MeshData>>& c) {
   add_names("region_names", &MeshData::region_names, "{tag: name}. Reading gives a copy.");
   add_names("patch_names", &MeshData::patch_names, "{tag: name}. Reading gives a copy.");
   c.def_property(
-      "point_data", [](const MeshData& m) { return arrays_by_name(m.point_data); },
+      "point_data", [](const MeshData& m) -> Typed<"dict[str, Floats]"> { return arrays_by_name(m.point_data); },
       [](MeshData& m, const py::dict& named) {
         auto arrays = arrays_from(named, m.points.size(), "point");
         const MeshUse use(m, true);
@@ -108,18 +109,13 @@ void add_names_and_data(py::class_<MeshData, std::shared_ptr<MeshData>>& c) {
       },
       "Values at the points: {name: (n,) or (n, components)}. Reading gives a copy.");
   c.def_property(
-      "cell_data", [](const MeshData& m) { return arrays_by_name(m.cell_data); },
+      "cell_data", [](const MeshData& m) -> Typed<"dict[str, Floats]"> { return arrays_by_name(m.cell_data); },
       [](MeshData& m, const py::dict& named) {
         auto arrays = arrays_from(named, m.cell_count(), "cell");
         const MeshUse use(m, true);
         m.cell_data = std::move(arrays);
       },
       "Values of the cells: {name: (n,) or (n, components)}. Reading gives a copy.");
-}
-
-[[noreturn]] void refuse_index(std::size_t i, std::size_t count, const char* of) {
-  throw py::index_error("there is no " + std::string(of) + " " + std::to_string(i) + ": there are " +
-                        std::to_string(count));
 }
 
 void add_methods(py::class_<MeshData, std::shared_ptr<MeshData>>& c) {
@@ -132,13 +128,12 @@ void add_methods(py::class_<MeshData, std::shared_ptr<MeshData>>& c) {
         return cells_by_type(m);
       },
       "The cells by type, as the constructor takes them. Raises InvalidArgument where the mesh's arrays contradict "
-      "each "
-      "other.");
+      "each other.");
   c.def(
       "cell",
       [](const MeshData& m, std::size_t i) {
         check_arrays(m);
-        if (i >= m.cell_count()) refuse_index(i, m.cell_count(), "cell");
+        expect_number(i, m.cell_count(), "cell");
         return array_of(m.cell(i));
       },
       py::arg("c"),
@@ -148,13 +143,13 @@ void add_methods(py::class_<MeshData, std::shared_ptr<MeshData>>& c) {
       "patch_face",
       [](const MeshData& m, std::size_t i) {
         check_arrays(m);
-        if (i >= m.patch_tags.size()) refuse_index(i, m.patch_tags.size(), "patch face");
+        expect_number(i, m.patch_tags.size(), "patch face");
         return array_of(m.patch_face(i));
       },
       py::arg("f"), "The corners of one face of a patch: uint32 (n,). Raises IndexError where there is no such face.");
   c.def(
       "add_cell",
-      [](MeshData& m, CellType type, const py::object& corners) {
+      [](MeshData& m, CellType type, const Typed<"Integers">& corners) {
         const auto numbers = indices(corners, "corners");
         const MeshUse use(m, true);
         m.add_cell(type, numbers);
@@ -162,7 +157,7 @@ void add_methods(py::class_<MeshData, std::shared_ptr<MeshData>>& c) {
       py::arg("type"), py::arg("corners"), "Adds a cell. For many cells use the constructor.");
   c.def(
       "add_patch_face",
-      [](MeshData& m, const py::object& corners, std::int32_t tag) {
+      [](MeshData& m, const Typed<"Integers">& corners, std::int32_t tag) {
         const auto numbers = indices(corners, "corners");
         const MeshUse use(m, true);
         m.add_patch_face(numbers, tag);
@@ -199,32 +194,28 @@ MeshData from_state(const py::tuple& state) {
 }  // namespace
 
 void bind(py::module_& m) {
-  bind_enum<CellType>(m, "CellType",
-                      {{"TETRAHEDRON", CellType::tetrahedron},
-                       {"HEXAHEDRON", CellType::hexahedron},
-                       {"PRISM", CellType::prism},
-                       {"PYRAMID", CellType::pyramid},
-                       {"POLYHEDRON", CellType::polyhedron},
-                       {"TRIANGLE", CellType::triangle},
-                       {"QUADRILATERAL", CellType::quadrilateral},
-                       {"POLYGON", CellType::polygon}});
   py::tuple names(cell_type_names.size());
   for (std::size_t i = 0; i < cell_type_names.size(); ++i) names[i] = std::string(cell_type_names[i]);
   m.attr("CELL_TYPE_NAMES") = names;
   m.def(
-      "dimension", [](CellType type) { return dimension(type); }, py::arg("type"), doc("dimension"));
+      "dimension", [](CellType type) { return dimension(type); }, about("dimension"));
 
   py::class_<MeshData, std::shared_ptr<MeshData>> c(m, "MeshData", doc("MeshData"));
-  c.def(py::init([](const py::object& points, const py::object& cells, const py::object& regions,
-                    const py::object& patches, const py::object& region_names, const py::object& patch_names,
-                    const py::object& free, const py::object& point_data, const py::object& cell_data) {
-          return mesh_from_arrays(
-              {points, cells, regions, region_names, patches, patch_names, free, point_data, cell_data});
-        }),
-        py::arg("points") = py::none(), py::arg("cells") = py::none(), py::kw_only(), py::arg("regions") = py::none(),
-        py::arg("patches") = py::none(), py::arg("region_names") = py::none(), py::arg("patch_names") = py::none(),
-        py::arg("free") = py::none(), py::arg("point_data") = py::none(), py::arg("cell_data") = py::none(),
-        constructor_doc);
+  c.def(
+      py::init(
+          [](const Typed<"Points | None">& points,
+             const Typed<"Mapping[str, Any] | Sequence[tuple[str, Any]] | None">& cells, const Typed<"Any">& regions,
+             const Typed<"Mapping[Any, Any] | Sequence[tuple[Any, Any]] | None">& patches,
+             const Typed<"Mapping[int, str] | None">& region_names,
+             const Typed<"Mapping[int, str] | None">& patch_names, const Typed<"Any">& free,
+             const Typed<"Mapping[str, Any] | None">& point_data, const Typed<"Mapping[str, Any] | None">& cell_data) {
+            return mesh_from_arrays(
+                {points, cells, regions, region_names, patches, patch_names, free, point_data, cell_data});
+          }),
+      py::arg("points") = py::none(), py::arg("cells") = py::none(), py::kw_only(), py::arg("regions") = py::none(),
+      py::arg("patches") = py::none(), py::arg("region_names") = py::none(), py::arg("patch_names") = py::none(),
+      py::arg("free") = py::none(), py::arg("point_data") = py::none(), py::arg("cell_data") = py::none(),
+      constructor_doc);
   add_arrays(c);
   add_names_and_data(c);
   add_methods(c);

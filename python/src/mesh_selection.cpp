@@ -26,7 +26,7 @@ void bind(py::module_& m) {
   m.def(
       "select_free_regions",
       [](MeshData& mesh, const Texts& regions) { change(mesh, [&] { select_free_regions(mesh, regions); }); },
-      py::arg("mesh"), py::arg("regions"), doc("select_free_regions"));
+      about("select_free_regions"));
   m.def(
       "cells_of_region",
       [](const MeshData& mesh, const std::string& region) {
@@ -39,16 +39,16 @@ void bind(py::module_& m) {
         }
         return py::array_t<std::uint32_t>(static_cast<py::ssize_t>(cells.size()), cells.data());
       },
-      py::arg("mesh"), py::arg("region"), doc("cells_of_region"));
+      about("cells_of_region"));
   m.def(
       "select_free_values",
       [](MeshData& mesh, const std::string& array, const std::vector<double>& values) {
         change(mesh, [&] { select_free_values(mesh, array, values); });
       },
-      py::arg("mesh"), py::arg("array"), py::arg("values"), doc("select_free_values"));
+      about("select_free_values"));
   m.def(
       "select_patches", [](MeshData& mesh, const Texts& names) { change(mesh, [&] { select_patches(mesh, names); }); },
-      py::arg("mesh"), py::arg("names"), doc("select_patches"));
+      about("select_patches"));
   m.def(
       "divide_walls",
       [](MeshData& mesh, double degrees) {
@@ -57,10 +57,9 @@ void bind(py::module_& m) {
           divide_walls(mesh, degrees);
         });
       },
-      py::arg("mesh"), py::arg("degrees"),
-      (std::string(doc("divide_walls")) + "\n\nRaises InvalidMesh where check_and_repair() would refuse the mesh, and "
-                                          "InvalidArgument where it would change it.")
-          .c_str());
+      about("divide_walls",
+            "Raises InvalidMesh where check_and_repair() would refuse the mesh, and InvalidArgument where it would "
+            "change it."));
 }
 
 }  // namespace dartcast::python::mesh_selection

@@ -4,6 +4,7 @@
 #include "bind.hpp"
 #include "support/map_checks.hpp"
 #include "support/python.hpp"
+#include "support/rows.hpp"
 
 namespace py = pybind11;
 
@@ -25,7 +26,7 @@ void bind_functions(py::module_& m) {
           return forecast(map, state, corners);
         });
       },
-      py::arg("map"), py::arg("state"), py::arg("corners"), doc("forecast"));
+      about("forecast"));
   m.def(
       "placement",
       [](const MapHandle& h, SimplexId simplex, const Corners& corners, const Vec3& x) {
@@ -34,35 +35,15 @@ void bind_functions(py::module_& m) {
           return placement(map, simplex, corners, x);
         });
       },
-      py::arg("map"), py::arg("simplex"), py::arg("corners"), py::arg("x"), doc("placement"));
+      about("placement"));
 }
 
 }  // namespace
 
 void bind(py::module_& m) {
-  bind_enum<Place>(m, "Place", {{"FREE", Place::free}, {"BLOCKED", Place::blocked}, {"OUTSIDE", Place::outside}});
-  Record<ParticleState>(m, "ParticleState")
-      .field("position", &ParticleState::position)
-      .field("cell", &ParticleState::cell)
-      .field("simplex", &ParticleState::simplex)
-      .field("touching_count", &ParticleState::touching_count)
-      .field("held", &ParticleState::held)
-      .field("touching", &ParticleState::touching)
-      .def("at", &ParticleState::at, doc("ParticleState::at"))
-      .def("put", &ParticleState::put, py::arg("s"), py::arg("p"), doc("ParticleState::put"))
-      .finish();
-  Record<Forecast>(m, "Forecast")
-      .field("kind", &Forecast::kind)
-      .field("dart", &Forecast::dart)
-      .field("face", &Forecast::face)
-      .finish();
-  Record<Placement>(m, "Placement").field("kind", &Placement::kind).field("dart", &Placement::dart).finish();
-  Record<Location>(m, "Location")
-      .field("place", &Location::place)
-      .field("simplex", &Location::simplex)
-      .field("kind", &Location::kind)
-      .field("dart", &Location::dart)
-      .finish();
+  register_rows();
+  class_of<ParticleState>().def(
+      "at", [](const ParticleState& s) { return or_none(s.at()); }, doc("ParticleState::at"));
   bind_functions(m);
 }
 

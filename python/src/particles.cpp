@@ -2,6 +2,7 @@
 #include "bind.hpp"
 #include "dartcast/environment.hpp"
 #include "support/environments.hpp"
+#include "support/members.hpp"
 #include "support/rows.hpp"
 
 namespace py = pybind11;
@@ -11,10 +12,6 @@ namespace {
 
 using Class = py::class_<ParticlesHandle, ParticlesPointer>;
 constexpr const char* the_set = "the set of particles";
-
-ParticlesPointer make(Particles&& particles) {
-  return std::make_shared<ParticlesHandle>(ParticlesHandle{std::move(particles)});
-}
 
 // A fresh array with one entry or one row of three for each state.
 template <class T, class Get>
@@ -27,28 +24,14 @@ py::array_t<T> column(const ParticlesHandle& h, const Get& get) {
   return made;
 }
 
-py::array positions(const ParticlesHandle& h) {
-  const Use use(*h.usage, the_set);
-  const auto states = h.particles.states();
-  py::array_t<double> made({static_cast<py::ssize_t>(states.size()), py::ssize_t{3}});
-  double* out = made.mutable_data();
-  for (const ParticleState& s : states) {
-    *out++ = s.position.x;
-    *out++ = s.position.y;
-    *out++ = s.position.z;
-  }
-  return read_only(made);
-}
-
-void expect_particle(const Particles& particles, std::size_t i) {
-  if (i >= particles.size()) {
-    throw py::index_error("there is no particle " + std::to_string(i) + ": there are " +
-                          std::to_string(particles.size()));
-  }
+std::vector<Vec3> positions(const Particles& particles) {
+  std::vector<Vec3> points;
+  for (const ParticleState& s : particles.states()) points.push_back(s.position);
+  return points;
 }
 
 void bind_columns(Class& c) {
-  c.def_property_readonly("positions", &positions, "float64 (n, 3), a read-only copy.");
+  property(c, "positions", &positions, "float64 (n, 3), a read-only copy.");
   const auto state = [&](const char* name, auto type, auto get, const char* text) {
     using T = decltype(type);
     c.def_property_readonly(
@@ -82,16 +65,16 @@ void bind_columns(Class& c) {
         return read_only(py::array_t<std::uint32_t>({static_cast<py::ssize_t>(numbers.size()), py::ssize_t{4}},
                                                     numbers.empty() ? nullptr : numbers.data()->data()));
       },
-      (std::string(doc("Particles::vertex_numbers")) + "\n\nuint32 (n, 4), a read-only copy.").c_str());
+      about("Particles::vertex_numbers", "uint32 (n, 4), a read-only copy."));
   c.def(
       "held_weights",
       [](const ParticlesHandle& h, std::size_t i) {
         const Use use(*h.usage, the_set);
-        expect_particle(h.particles, i);
+        expect_number(i, h.particles.size(), "particle");
         const Weights w = h.particles.held_weights(i);
         return py::array_t<double>(static_cast<py::ssize_t>(w.size()), w.data());
       },
-      py::arg("i"), (std::string(doc("Particles::held_weights")) + "\n\nfloat64 (4,).").c_str());
+      about("Particles::held_weights", "float64 (4,)."));
   c.def(
       "held_weights",
       [](const ParticlesHandle& h) {
@@ -107,77 +90,38 @@ void bind_columns(Class& c) {
 }
 
 void bind_changes(Class& c) {
-  c.def(
-      "remove",
-      [](ParticlesHandle& h, const py::object& given) {
-        const auto marked = marks(given, "marks");
-        const Use use(*h.usage, the_set);
-        const std::vector<std::uint8_t> copy(marked.begin(), marked.end());
-        const py::gil_scoped_release release;
-        h.particles.remove(copy);
-      },
-      py::arg("marks"), (std::string(doc("Particles::remove")) + " bool or uint8 (n,).").c_str());
-  c.def(
-      "truncate",
-      [](ParticlesHandle& h, std::size_t count) {
-        const Use use(*h.usage, the_set);
-        h.particles.truncate(count);
-      },
-      py::arg("count"), doc("Particles::truncate"));
-  c.def(
-      "reorder",
-      [](ParticlesHandle& h, const py::object& given) {
-        const auto order = indices(given, "order");
-        const Use use(*h.usage, the_set);
-        const py::gil_scoped_release release;
-        h.particles.reorder(order);
-      },
-      py::arg("order"), doc("Particles::reorder"));
-  c.def(
-      "selected",
-      [](const ParticlesHandle& h, const py::object& given) {
-        const auto which = indices(given, "which");
-        const Use use(*h.usage, the_set);
-        const py::gil_scoped_release release;
-        return make(h.particles.selected(which));
-      },
-      py::arg("which"), doc("Particles::selected"));
+  method(c, "remove", &Particles::remove);
+  method(c, "truncate", &Particles::truncate);
+  method(c, "reorder", &Particles::reorder);
+  long_method(c, "selected", &Particles::selected);
   c.def(
       "replace",
-      [](ParticlesHandle& h, const py::object& given, const ParticlesHandle& by) {
+      [](ParticlesHandle& h, const Typed<"Integers">& given, const ParticlesHandle& by) {
         const auto which = indices(given, "which");
         if (&h == &by)
           throw InvalidArgument("replace: a set cannot replace its own particles: give one that was selected()");
-        const Use use(*h.usage, the_set);
         const Use other(*by.usage, "the other set of particles");
-        const py::gil_scoped_release release;
-        h.particles.replace(which, by.particles);
+        h.change([&](Particles& particles) { particles.replace(which, by.particles); });
       },
-      py::arg("which"), py::arg("by"), doc("Particles::replace"));
+      about("Particles::replace"));
 }
 
 ParticlesPointer copy_of(const ParticlesHandle& h) {
-  const Use use(*h.usage, the_set);
-  const py::gil_scoped_release release;
-  return make(Particles(h.particles));
+  return read_long(h, [](const Particles& particles) { return kept(particles); });
 }
 
 }  // namespace
 
 void bind(py::module_& m) {
   Class c(m, "Particles", doc("Particles"));
-  c.def(py::init([] { return make({}); }), "An empty set.");
-  const auto size = [](const ParticlesHandle& h) {
-    const Use use(*h.usage, the_set);
-    return h.particles.size();
-  };
-  c.def("__len__", size);
-  c.def_property_readonly("size", size, "The number of particles.");
+  c.def(py::init([] { return std::make_shared<ParticlesHandle>(); }), "An empty set.");
+  c.def("__len__", calling<ParticlesHandle>(&Particles::size));
+  property(c, "size", &Particles::size, "The number of particles.");
   c.def(
       "__getitem__",
       [](const ParticlesHandle& h, std::size_t i) {
         const Use use(*h.usage, the_set);
-        expect_particle(h.particles, i);
+        expect_number(i, h.particles.size(), "particle");
         return h.particles[i];
       },
       py::arg("i"), "The state of a particle, a copy.");

@@ -12,13 +12,25 @@ namespace py = pybind11;
 namespace dartcast::python::predicates {
 namespace {
 
+using Place = Typed<"Vector or Points">;
+
+// One result, or an array of them.
+template <class Result, class Number>
+struct Of : py::object {
+  Of(py::object of) : object(std::move(of)) {}  // NOLINT(google-explicit-constructor): it is the same object
+};
+
+using Where = Typed<"Vector or Points">;
+template <std::size_t>
+using WhereOf = Where;
+
 constexpr std::array<const char*, 4> point_names = {"a", "b", "c", "d"};
 
 // Points in a call: one of them, or an array.
 class PointArgument {
  public:
   PointArgument(const py::object& x, const char* name) {
-    if (py::isinstance<py::array>(x) && py::reinterpret_borrow<py::array>(x).ndim() == 2) {
+    if (is_array(x, 2)) {
       many_ = vectors(x, name);
       is_one_ = false;
     } else {
@@ -63,100 +75,80 @@ py::object for_points(const std::array<py::object, N>& given, const Function& f)
   return values;
 }
 
-template <class Number, class Result>
-void bind_of_four(py::module_& m, const char* name, Result (*f)(const Vec3&, const Vec3&, const Vec3&, const Vec3&),
-                  const char* more) {
-  m.def(
-      name,
-      [f](const py::object& a, const py::object& b, const py::object& c, const py::object& d) {
-        return for_points<Number, 4>({a, b, c, d}, f);
-      },
-      py::arg("a"), py::arg("b"), py::arg("c"), py::arg("d"), (std::string(doc(name)) + more).c_str());
-}
-
-template <class Number, class Result>
-void bind_of_three(py::module_& m, const char* name, Result (*f)(const Vec3&, const Vec3&, const Vec3&),
-                   const char* more) {
-  m.def(
-      name,
-      [f](const py::object& a, const py::object& b, const py::object& c) {
-        return for_points<Number, 3>({a, b, c}, f);
-      },
-      py::arg("a"), py::arg("b"), py::arg("c"), (std::string(doc(name)) + more).c_str());
+// f of N points: a number, or one for each row.
+template <class Number, class Result, std::size_t N, class F>
+void bind_of(py::module_& m, const char* name, const F& f, const char* more) {
+  static constexpr std::array<Argument, 4> arguments = {{{"a"}, {"b"}, {"c"}, {"d"}}};
+  const About said = {about(name, more).text, std::span(arguments).first(N)};
+  [&]<std::size_t... I>(std::index_sequence<I...> /*points*/) {
+    m.def(
+        name,
+        [f](const WhereOf<I>&... points) -> Either<Result, py::array_t<Number>> {
+          return for_points<Number, N>({points...}, f);
+        },
+        said);
+  }
+  (std::make_index_sequence<N>());
 }
 
 void bind_signs(py::module_& m) {
-  bind_enum<Sign>(m, "Sign",
-                  {{"NEGATIVE", Sign::negative},
-                   {"ZERO", Sign::zero},
-                   {"POSITIVE", Sign::positive},
-                   {"UNDECIDABLE", Sign::undecidable}});
   constexpr const char* signs =
-      "\n\nEach point is three numbers, or all of them are arrays (n, 3), where single points count for all rows. "
-      "Returns "
+      "Each point is three numbers, or all of them are arrays (n, 3), where single points count for all rows. Returns "
       "a Sign, or int8 (n,).";
   constexpr const char* values =
-      "\n\nEach point is three numbers, or all of them are arrays (n, 3), where single points count for all rows. "
-      "Returns "
+      "Each point is three numbers, or all of them are arrays (n, 3), where single points count for all rows. Returns "
       "a number, or float64 (n,).";
-  bind_of_four<std::int8_t, Sign>(m, "orient3d", &orient3d, signs);
-  bind_of_four<std::int8_t, Sign>(m, "orient3d_exact", &orient3d_exact, signs);
-  bind_of_four<double, double>(m, "orient3d_value", &orient3d_value, values);
-  bind_of_three<std::int8_t, Sign>(m, "orient2d", &orient2d, signs);
-  bind_of_three<std::int8_t, Sign>(m, "orient2d_exact", &orient2d_exact, signs);
-  bind_of_three<double, double>(m, "orient2d_value", &orient2d_value, values);
+  bind_of<std::int8_t, Sign, 4>(
+      m, "orient3d", [](auto&... p) { return orient3d(p...); }, signs);
+  bind_of<std::int8_t, Sign, 4>(
+      m, "orient3d_exact", [](auto&... p) { return orient3d_exact(p...); }, signs);
+  bind_of<double, double, 4>(
+      m, "orient3d_value", [](auto&... p) { return orient3d_value(p...); }, values);
+  bind_of<std::int8_t, Sign, 3>(
+      m, "orient2d", [](auto&... p) { return orient2d(p...); }, signs);
+  bind_of<std::int8_t, Sign, 3>(
+      m, "orient2d_exact", [](auto&... p) { return orient2d_exact(p...); }, signs);
+  bind_of<double, double, 3>(
+      m, "orient2d_value", [](auto&... p) { return orient2d_value(p...); }, values);
 }
 
 void bind_bounds(py::module_& m) {
-  m.attr("SMALLEST_MAGNITUDE") = smallest_magnitude;
-  m.attr("LARGEST_MAGNITUDE") = largest_magnitude;
-  m.attr("DETERMINANT_ERROR") = determinant_error;
-  m.attr("SMALLEST_EXTENT") = smallest_extent;
-  m.attr("LARGEST_EXTENT") = largest_extent;
-  m.attr("LARGEST_DECIDED_EXTENT") = largest_decided_extent;
-  m.attr("PLANE_ERROR") = plane_error;
-  m.def("are_extents", &are_extents, py::arg("e"), py::arg("largest"), doc("are_extents"));
-  m.def("bound_holds", &bound_holds, py::arg("extent"), doc("bound_holds"));
-  m.def("filter_applies", &filter_applies, py::arg("extent"), doc("filter_applies"));
-  m.def("are_plane_extents", &are_plane_extents, py::arg("x"), py::arg("y"), py::arg("largest"),
-        doc("are_plane_extents"));
-  m.def("plane_bound_holds", &plane_bound_holds, py::arg("x"), py::arg("y"), doc("plane_bound_holds"));
-  m.def("plane_filter_applies", &plane_filter_applies, py::arg("x"), py::arg("y"), doc("plane_filter_applies"));
   m.def(
       "extent_of",
-      [](const py::object& x) {
+      [](const Typed<"Points">& x) {
         const auto all = vectors(x, "vectors");
         if (all.empty()) throw InvalidArgument("vectors: expected at least one");
         Vec3 extent;
         for (const Vec3& v : all) extent = extent_of(extent, v);
         return extent;
       },
-      py::arg("vectors"), (std::string(doc("extent_of")) + "\n\nvectors: float64 (n, 3).").c_str());
+      py::arg("vectors"), about("extent_of", "vectors: float64 (n, 3)."));
   m.def(
       "rounds_nothing",
-      [](const Vec3& extent, const py::object& x) {
+      [](const Vec3& extent, const Typed<"Points">& x) {
         const auto all = vectors(x, "points");
         return std::all_of(all.begin(), all.end(), [&](const Vec3& p) { return rounds_nothing(extent, p); });
       },
-      py::arg("extent"), py::arg("points"),
-      (std::string(doc("rounds_nothing")) + "\n\npoints: float64 (n, 3).").c_str());
+      about("rounds_nothing", "points: float64 (n, 3)."));
 }
 
 void bind_ranges(py::module_& m) {
   m.def(
       "in_exact_range",
-      [](const py::object& p) { return for_points<bool, 1>({p}, [](const Vec3& x) { return in_exact_range(x); }); },
-      py::arg("p"), (std::string(doc("in_exact_range")) + "\n\nOf an array (n, 3): bool (n,).").c_str());
+      [](const Where& p) -> Either<bool, py::array_t<bool>> {
+        return for_points<bool, 1>({p}, [](const Vec3& x) { return in_exact_range(x); });
+      },
+      about("in_exact_range", "Of an array (n, 3): bool (n,)."));
   m.def(
       "flushed",
-      [](const py::object& x) -> py::object {
+      [](const Typed<"Vector | Points">& x) {
         const PointArgument points(x, "x");
         if (points.is_one()) return array_of(flushed(points[0]));
         std::vector<Vec3> all(points.size());
         for (std::size_t i = 0; i < all.size(); ++i) all[i] = flushed(points[i]);
         return array_of(std::span<const Vec3>(all));
       },
-      py::arg("x"), (std::string(doc("flushed")) + "\n\nx: three numbers, or an array (n, 3).").c_str());
+      about("flushed", "x: three numbers, or an array (n, 3)."));
 }
 
 void expect_range(std::initializer_list<Vec3> points) {
@@ -177,29 +169,29 @@ Perturbation perturbation(const Vec3& p, const py::object& opposite, std::size_t
 
 void bind_perturbations(py::module_& m) {
   py::class_<SymbolicPerturbation>(m, "SymbolicPerturbation", doc("SymbolicPerturbation"))
-      .def(py::init([](const Vec3& p, const py::object& opposite) {
+      .def(py::init([](const Vec3& p, const Typed<"Points">& opposite) {
              return perturbation<SymbolicPerturbation>(p, opposite, 3);
            }),
-           py::arg("p"), py::arg("opposite"), doc("SymbolicPerturbation::SymbolicPerturbation"))
+           about("SymbolicPerturbation::SymbolicPerturbation"))
       .def(
           "of_line",
           [](const SymbolicPerturbation& s, const Vec3& a, const Vec3& b, const Vec3& q) {
             expect_range({a, b, q});
             return s.of_line(a, b, q);
           },
-          py::arg("a"), py::arg("b"), py::arg("q"), doc("SymbolicPerturbation::of_line"));
+          about("SymbolicPerturbation::of_line"));
   py::class_<PlanarSymbolicPerturbation>(m, "PlanarSymbolicPerturbation", doc("PlanarSymbolicPerturbation"))
-      .def(py::init([](const Vec3& p, const py::object& opposite) {
+      .def(py::init([](const Vec3& p, const Typed<"Points">& opposite) {
              return perturbation<PlanarSymbolicPerturbation>(p, opposite, 2);
            }),
-           py::arg("p"), py::arg("opposite"), doc("PlanarSymbolicPerturbation::PlanarSymbolicPerturbation"))
+           about("PlanarSymbolicPerturbation::PlanarSymbolicPerturbation"))
       .def(
           "of_line",
           [](const PlanarSymbolicPerturbation& s, const Vec3& q0) {
             expect_range({q0});
             return s.of_line(q0);
           },
-          py::arg("q0"), doc("PlanarSymbolicPerturbation::of_line"));
+          about("PlanarSymbolicPerturbation::of_line"));
 }
 
 }  // namespace

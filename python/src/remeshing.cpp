@@ -2,8 +2,7 @@
 #include "dartcast/remeshing.hpp"
 
 #include "bind.hpp"
-#include "support/edits.hpp"
-#include "support/map_checks.hpp"
+#include "support/members.hpp"
 #include "support/python.hpp"
 
 namespace py = pybind11;
@@ -28,7 +27,7 @@ struct SubdividedHandle {
 
 void bind_subdivision(py::module_& m) {
   const auto list = [](std::vector<Vertex> Subdivision::*member) {
-    return [member](const SubdivisionHandle& h) { return without_writing(py::cast(h.subdivision.*member)); };
+    return [member](const SubdivisionHandle& h) { return reading(h.subdivision.*member); };
   };
   py::class_<SubdivisionHandle>(m, "Subdivision", doc("Subdivision"))
       .def_property_readonly(
@@ -51,7 +50,7 @@ void bind_subdivision(py::module_& m) {
           return SubdividedHandle{{std::move(made.subdivision), &e.map()}, std::move(made.cells)};
         });
       },
-      py::arg("edit"), py::arg("c"), doc("subdivide"));
+      about("subdivide"));
   m.def(
       "coarsen",
       [](const EditHandle& h, const SubdivisionHandle& given) {
@@ -60,7 +59,7 @@ void bind_subdivision(py::module_& m) {
           return coarsen(e, s.subdivision);
         });
       },
-      py::arg("edit"), py::arg("subdivision"), doc("coarsen"));
+      about("coarsen"));
   m.def(
       "update_after_edit",
       [](const MapHandle& h, const std::vector<Cell>& added, SubdivisionHandle& s) {
@@ -71,46 +70,11 @@ void bind_subdivision(py::module_& m) {
       },
       py::arg("map"), py::arg("added"), py::arg("subdivision"),
       "Updates a subdivision. Call it after later edits next to the cell, and after the commit, which replaces its "
-      "parts. "
-      "`added`: cells that the edit made (EditReport.added).");
-}
-
-void bind_repair(py::module_& m) {
-  m.def(
-      "divide_into_simplices",
-      [](const EditHandle& h, const std::vector<Cell>& cells) {
-        return change(h, [&](ComplexEdit& e) { return divide_into_simplices(e, cells); });
-      },
-      py::arg("edit"), py::arg("cells"), doc("divide_into_simplices"));
-  Record<RepairOptions>(m, "RepairOptions").field("max_cells", &RepairOptions::max_cells).finish();
-  bind_enum<Mending>(m, "Mending", {{"POINT", Mending::point}, {"MOVED", Mending::moved}, {"CUT", Mending::cut}});
-  Record<MendedRegion>(m, "MendedRegion")
-      .field("how", &MendedRegion::how)
-      .field("sources", &MendedRegion::sources)
-      .field("cells", &MendedRegion::cells)
-      .finish();
-  Record<LeftCell>(m, "LeftCell")
-      .field("cell", &LeftCell::cell)
-      .field("source", &LeftCell::source)
-      .field("reason", &LeftCell::reason)
-      .finish();
-  Record<RepairReport>(m, "RepairReport")
-      .field("mended", &RepairReport::mended)
-      .field("left", &RepairReport::left)
-      .finish();
-  m.def(
-      "repair",
-      [](const EditHandle& h, const std::vector<Cell>& cells, const RepairOptions& options) {
-        return change(h, [&, own = options](ComplexEdit& e) { return repair(e, cells, own); });
-      },
-      py::arg("edit"), py::arg("cells"), py::arg("options") = RepairOptions{}, doc("repair"));
+      "parts. `added`: cells that the edit made (EditReport.added).");
 }
 
 }  // namespace
 
-void bind(py::module_& m) {
-  bind_subdivision(m);
-  bind_repair(m);
-}
+void bind(py::module_& m) { bind_subdivision(m); }
 
 }  // namespace dartcast::python::remeshing

@@ -13,55 +13,22 @@ namespace py = pybind11;
 namespace dartcast::python::response {
 namespace {
 
-void bind_values(py::module_& m) {
-  bind_enum<WallResponseKind>(m, "WallResponseKind",
-                              {{"REFLECT", WallResponseKind::reflect},
-                               {"SLIDE", WallResponseKind::slide},
-                               {"STICK", WallResponseKind::stick},
-                               {"ABSORB", WallResponseKind::absorb},
-                               {"ESCAPE", WallResponseKind::escape}});
-  bind_enum<ParticleStatus>(m, "ParticleStatus",
-                            {{"ALIVE", ParticleStatus::alive},
-                             {"STUCK", ParticleStatus::stuck},
-                             {"ABSORBED", ParticleStatus::absorbed},
-                             {"ESCAPED", ParticleStatus::escaped}});
-  Record<WallResponse>(m, "WallResponse")
-      .field("kind", &WallResponse::kind)
-      .field("restitution", &WallResponse::restitution)
-      .field("friction", &WallResponse::friction)
-      .def(py::init([](const Reflect& r) { return WallResponse(r); }))
-      .def(py::init([](const Slide& r) { return WallResponse(r); }))
-      .def(py::init([](const Stick& r) { return WallResponse(r); }))
-      .def(py::init([](const Absorb& r) { return WallResponse(r); }))
-      .def(py::init([](const Escape& r) { return WallResponse(r); }))
-      .finish();
-  Record<Reflect>(m, "Reflect")
-      .field("restitution", &Reflect::restitution)
-      .field("friction", &Reflect::friction)
-      .finish();
-  Record<Slide>(m, "Slide").finish();
-  Record<Stick>(m, "Stick").finish();
-  Record<Absorb>(m, "Absorb").finish();
-  Record<Escape>(m, "Escape").finish();
-  py::implicitly_convertible<Reflect, WallResponse>();
-  py::implicitly_convertible<Slide, WallResponse>();
-  py::implicitly_convertible<Stick, WallResponse>();
-  py::implicitly_convertible<Absorb, WallResponse>();
-  py::implicitly_convertible<Escape, WallResponse>();
-  Record<Acceleration>(m, "Acceleration")
-      .field("value", &Acceleration::value)
-      .field("duration", &Acceleration::duration)
-      .finish();
+// Where a call takes a WallResponse it takes these.
+template <class... Response>
+void convert_to_response() {
+  (class_of<WallResponse>().def(py::init([](const Response& r) { return WallResponse(r); }), py::arg("response"),
+                                py::prepend()),
+   ...);
+  (py::implicitly_convertible<Response, WallResponse>(), ...);
 }
 
 void bind_responses(py::module_& m) {
   py::class_<WallResponses>(m, "WallResponses",
-                            (std::string(doc("WallResponses")) +
-                             "\n\ngeneral: a response; or a dict of responses by the number of their patch, with the "
-                             "general one at None. With a map the keys may be names of its patches. Wherever a call "
-                             "takes WallResponses it takes a response or a dict, too.")
-                                .c_str())
-      .def(py::init([](const py::object& general, const MapHandle* map) {
+                            about("WallResponses",
+                                  "general: a response; or a dict of responses by the number of their patch, with the "
+                                  "general one at None. With a map the keys may be names of its patches. Wherever a "
+                                  "call takes WallResponses it takes a response or a dict, too."))
+      .def(py::init([](const Typed<"Responses | None">& general, const MapHandle* map) {
              if (general.is_none()) return WallResponses();
              if (map == nullptr) return responses_of(general, nullptr);
              return read(*map, [&](const CombinatorialMap& patches) { return responses_of(general, &patches); });
@@ -69,7 +36,7 @@ void bind_responses(py::module_& m) {
            py::arg("general") = py::none(), py::arg("map") = py::none(), doc("WallResponses::WallResponses"))
       .def(
           "set",
-          [](WallResponses& r, Patch patch, const py::object& response) {
+          [](WallResponses& r, Patch patch, const Typed<"WallResponse">& response) {
             WallResponse one;
             if (!load_response(response, one)) refuse_member("response", "a response such as Reflect(0.5)", response);
             r.set(patch, one);
@@ -85,17 +52,14 @@ void bind_callback(py::module_& m) {
       m, "ContactCallback", "What respond_with() makes: to be passed as `respond`.");
   m.def(
       "respond_with",
-      [](const py::object& responses, const py::object& velocities, const py::object& statuses, double dt,
-         const Acceleration& acceleration) {
+      [](const Typed<"Responses">& responses, const Typed<"Points">& velocities,
+         const Typed<"NDArray[uint8] | None">& statuses, double dt, const Acceleration& acceleration) {
         return std::make_shared<LibraryAnswers>(responses_of(responses, nullptr), velocities, statuses, dt,
                                                 acceleration);
       },
-      py::arg("responses"), py::arg("velocities"), py::arg("fates"), py::arg("dt"),
-      py::arg("acceleration") = Acceleration{},
-      (std::string(doc("respond_with")) +
-       "\n\nvelocities: float64 (n, 3), written in place. fates: uint8 (n,) of ParticleStatus, written in place; or "
-       "None. The arrays are kept alive. advance(..., respond=Reflect(0.5), velocities=v, dt=dt) does the same.")
-          .c_str());
+      about("respond_with",
+            "velocities: float64 (n, 3), written in place. fates: uint8 (n,) of ParticleStatus, written in place; or "
+            "None. The arrays are kept alive. advance(..., respond=Reflect(0.5), velocities=v, dt=dt) does the same."));
 }
 
 // Every index that hold_stopped() reads must be below the number of velocities.
@@ -110,8 +74,8 @@ void expect_report_of(const StepReport& report, std::size_t count) {
 void bind_functions(py::module_& m) {
   m.def(
       "hold_stopped",
-      [](const StepReport& report, const py::object& responses, const py::object& given, const py::object& fates,
-         double dt, const Acceleration& acceleration) {
+      [](const StepReport& report, const Typed<"Responses">& responses, const Typed<"Points">& given,
+         const Typed<"NDArray[uint8] | None">& fates, double dt, const Acceleration& acceleration) {
         const auto velocities = writable_vectors(given, "velocities");
         const std::vector<ParticleStatus> alive(fates.is_none() ? velocities.size() : 0);
         const auto statuses = fates.is_none() ? std::span<const ParticleStatus>(alive) : statuses_of(fates);
@@ -120,11 +84,8 @@ void bind_functions(py::module_& m) {
         expect_report_of(report, velocities.size());
         hold_stopped(report, responses_of(responses, nullptr), velocities, statuses, dt, acceleration);
       },
-      py::arg("report"), py::arg("responses"), py::arg("velocities"), py::arg("fates"), py::arg("dt"),
-      py::arg("acceleration") = Acceleration{},
-      (std::string(doc("hold_stopped")) +
-       "\n\nvelocities: float64 (n, 3), written in place. fates: uint8 (n,), or None where all are alive.")
-          .c_str());
+      about("hold_stopped",
+            "velocities: float64 (n, 3), written in place. fates: uint8 (n,), or None where all are alive."));
   m.def(
       "reflected",
       [](const Vec3& v, const std::vector<WallHit>& walls, double restitution, double friction) {
@@ -142,7 +103,7 @@ void bind_functions(py::module_& m) {
 }  // namespace
 
 void bind(py::module_& m) {
-  bind_values(m);
+  convert_to_response<Reflect, Slide, Stick, Absorb, Escape>();
   bind_responses(m);
   bind_callback(m);
   bind_functions(m);

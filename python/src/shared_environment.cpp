@@ -5,6 +5,7 @@
 #include "ranks.hpp"
 #include "support/environments.hpp"
 #include "support/handles.hpp"
+#include "support/members.hpp"
 #include "support/python.hpp"
 #include "support/respond.hpp"
 
@@ -22,6 +23,12 @@ struct EnvironmentOfRanks {
   mutable Usage usage;
 
   explicit EnvironmentOfRanks(const py::object& all) : ranks(all) {}
+  template <class F>
+  auto change(const F& f) {
+    const Use use(usage, the_environment);
+    const py::gil_scoped_release release;
+    return f(*environment);
+  }
 };
 
 struct ParticlesOfRanks {
@@ -29,12 +36,17 @@ struct ParticlesOfRanks {
   mutable Usage usage;
 
   explicit ParticlesOfRanks(std::size_t width) : particles(width) {}
+  template <class F>
+  auto call(const F& f) const {
+    const Use use(usage, the_particles);
+    return f(particles);
+  }
 };
 
 using EnvironmentOf = py::class_<EnvironmentOfRanks, std::shared_ptr<EnvironmentOfRanks>>;
 using ParticlesOf = py::class_<ParticlesOfRanks, std::shared_ptr<ParticlesOfRanks>>;
 
-std::shared_ptr<EnvironmentOfRanks> make(const MeshPart& part, const py::object& ranks, Threads threads) {
+std::shared_ptr<EnvironmentOfRanks> make(const MeshPart& part, const Typed<"Ranks">& ranks, Threads threads) {
   check_threads(threads);
   auto made = std::make_shared<EnvironmentOfRanks>(ranks);
   MeshPart own = part;
@@ -43,27 +55,20 @@ std::shared_ptr<EnvironmentOfRanks> make(const MeshPart& part, const py::object&
   return made;
 }
 
-// Calls f(environment) without Python's lock.
-template <class F>
-auto compute(EnvironmentOfRanks& e, F&& f) {
-  const Use use(e.usage, the_environment);
-  const py::gil_scoped_release release;
-  return f(*e.environment);
-}
-
 template <class F>
 auto compute(EnvironmentOfRanks& e, ParticlesOfRanks& p, F&& f) {
   const Use use(p.usage, the_particles);
-  return compute(e, [&](SharedEnvironment& own) { return f(own, p.particles); });
+  return e.change([&](SharedEnvironment& own) { return f(own, p.particles); });
 }
 
-py::array places_array(const std::vector<Place>& places) {
+py::array_t<std::uint8_t> places_array(const std::vector<Place>& places) {
   std::vector<std::uint8_t> values;
   for (const Place p : places) values.push_back(static_cast<std::uint8_t>(p));
   return array_of(std::move(values));
 }
 
-SharedStep advance(EnvironmentOfRanks& e, ParticlesOfRanks& p, const py::object& targets, const py::object& respond,
+SharedStep advance(EnvironmentOfRanks& e, ParticlesOfRanks& p, const Typed<"Points">& targets,
+                   const Typed<"Callable[[Contact, list[WallHit], list[WallHit]], object] | None">& respond,
                    const StepOptions& options) {
   const auto wanted = vectors(targets, "targets");
   if (!respond.is_none() && PyCallable_Check(respond.ptr()) == 0)
@@ -76,18 +81,16 @@ SharedStep advance(EnvironmentOfRanks& e, ParticlesOfRanks& p, const py::object&
   });
 }
 
-py::array positions_of(const ParticlesOfRanks& p) {
-  const Use use(p.usage, the_particles);
+std::vector<Vec3> positions_of(const SharedParticles& p) {
   std::vector<Vec3> values;
-  for (const ParticleState& s : p.particles.particles().states()) values.push_back(s.position);
-  return read_only(array_of(std::span<const Vec3>(values)));
+  for (const ParticleState& s : p.particles().states()) values.push_back(s.position);
+  return values;
 }
 
-py::array cells_of(const ParticlesOfRanks& p) {
-  const Use use(p.usage, the_particles);
-  std::vector<std::uint32_t> values;
-  for (const ParticleState& s : p.particles.particles().states()) values.push_back(s.cell.value);
-  return read_only(array_of(std::move(values)));
+std::vector<Cell> cells_of(const SharedParticles& p) {
+  std::vector<Cell> values;
+  for (const ParticleState& s : p.particles().states()) values.push_back(s.cell);
+  return values;
 }
 
 std::size_t checked(const ParticlesOfRanks& p, std::size_t particle) {
@@ -104,22 +107,8 @@ void bind_shared_particles(py::module_& m) {
           if (width > most) throw InvalidArgument("SharedParticles: at most 65536 numbers for a particle");
           return std::make_shared<ParticlesOfRanks>(width);
         }),
-        py::arg("width") = 0, doc("SharedParticles::SharedParticles"))
-      .def("__len__", [](const ParticlesOfRanks& p) { return p.particles.size(); })
-      .def_property_readonly(
-          "size", [](const ParticlesOfRanks& p) { return p.particles.size(); }, "The number of particles here.")
-      .def_property_readonly(
-          "width", [](const ParticlesOfRanks& p) { return p.particles.width(); }, "The numbers of each particle.")
-      .def_property_readonly(
-          "ids",
-          [](const ParticlesOfRanks& p) {
-            const Use use(p.usage, the_particles);
-            return read_only(array_of(p.particles.ids()));
-          },
-          "uint64 (n,), a read-only copy: in the order of adding, from 0.")
-      .def_property_readonly("positions", &positions_of, "float64 (n, 3), a read-only copy.")
-      .def_property_readonly("cells", &cells_of,
-                             "The cell of each particle in the rank's own map: uint32 (n,), a read-only copy.")
+        about("SharedParticles::SharedParticles"))
+      .def("__len__", calling<ParticlesOfRanks>(&SharedParticles::size))
       .def(
           "user_data",
           [](const ParticlesOfRanks& p, std::size_t particle) {
@@ -138,46 +127,38 @@ void bind_shared_particles(py::module_& m) {
             std::copy(values.begin(), values.end(), own.begin());
           },
           py::arg("particle"), py::arg("values"), "Sets the particle's numbers.");
+  property(c, "size", &SharedParticles::size, "The number of particles here.");
+  property(c, "width", &SharedParticles::width, "The numbers of each particle.");
+  property(c, "ids", &SharedParticles::ids, "uint64 (n,), a read-only copy: in the order of adding, from 0.");
+  property(c, "positions", &positions_of, "float64 (n, 3), a read-only copy.");
+  property(c, "cells", &cells_of, "The cell of each particle in the rank's own map: uint32 (n,), a read-only copy.");
 }
 
 void bind_steps(EnvironmentOf& c) {
   c.def("advance", &advance, py::arg("particles"), py::arg("targets"), py::arg("respond") = py::none(),
         py::arg("options") = StepOptions{},
-        (std::string(doc("SharedEnvironment::advance")) +
-         "\n\ntargets: float64 (n, 3). respond(contact, walls, earlier) answers one contact at a time, as with "
-         "Environment.advance(per_contact=True); None: a particle stays at its first contact.")
-            .c_str())
-      .def(
-          "count",
-          [](EnvironmentOfRanks& e, ParticlesOfRanks& p) {
-            return compute(e, p,
-                           [](SharedEnvironment& own, SharedParticles& particles) { return own.count(particles); });
-          },
-          py::arg("particles"), doc("SharedEnvironment::count"))
-      .def(
-          "audit",
-          [](EnvironmentOfRanks& e, ParticlesOfRanks& p) {
-            return compute(e, p,
-                           [](SharedEnvironment& own, SharedParticles& particles) { return own.audit(particles); });
-          },
-          py::arg("particles"), doc("SharedEnvironment::audit"));
+        about("SharedEnvironment::advance",
+              "targets: float64 (n, 3). respond(contact, walls, earlier) answers one contact at a time, as with "
+              "Environment.advance(per_contact=True); None: a particle stays at its first contact."));
+  const auto counting = [&c](const char* name, auto f) {
+    c.def(
+        name,
+        [f](EnvironmentOfRanks& e, ParticlesOfRanks& p) {
+          return compute(e, p, [f](SharedEnvironment& own, SharedParticles& particles) { return (own.*f)(particles); });
+        },
+        about(std::string("SharedEnvironment::") + name));
+  };
+  counting("count", &SharedEnvironment::count);
+  counting("audit", &SharedEnvironment::audit);
 }
 
 }  // namespace
 
 void bind(py::module_& m) {
   bind_shared_particles(m);
-  Record<SharedStep>(m, "SharedStep")
-      .field("report", &SharedStep::report)
-      .field("contact_ids", &SharedStep::contact_ids)
-      .field("left", &SharedStep::left)
-      .field("come", &SharedStep::come)
-      .finish();
   EnvironmentOf c(m, "SharedEnvironment", doc("SharedEnvironment"));
-  c.def(py::init(&make), py::arg("part"), py::arg("ranks"), py::arg("threads") = Threads{},
-        (std::string(doc("SharedEnvironment::SharedEnvironment")) +
-         "\n\nranks: as mpi_ranks() gives them, or a subclass of Ranks.")
-            .c_str())
+  c.def(py::init(&make),
+        about("SharedEnvironment::SharedEnvironment", "ranks: as mpi_ranks() gives them, or a subclass of Ranks."))
       .def_property_readonly(
           "part", [](EnvironmentOfRanks& e) { return e.environment->part(); }, "This rank's part: a copy.")
       .def_property_readonly(
@@ -195,23 +176,16 @@ void bind(py::module_& m) {
               throw InvalidArgument("whole: there is no such cell on this rank");
             return e.environment->whole(here);
           },
-          py::arg("here"), doc("SharedEnvironment::whole"))
+          about("SharedEnvironment::whole"))
       .def(
           "add",
-          [](EnvironmentOfRanks& e, ParticlesOfRanks& p, const py::object& positions) {
+          [](EnvironmentOfRanks& e, ParticlesOfRanks& p, const Typed<"Points">& positions) {
             const auto x = vectors(positions, "positions");
             return places_array(compute(
                 e, p, [&](SharedEnvironment& own, SharedParticles& particles) { return own.add(particles, x); }));
           },
-          py::arg("particles"), py::arg("positions"),
-          (std::string(doc("SharedEnvironment::add")) + "\n\nReturns uint8 (n,) of Place.").c_str())
-      .def(
-          "move",
-          [](EnvironmentOfRanks& e, const py::object& positions) {
-            const auto x = vectors(positions, "positions");
-            compute(e, [&](SharedEnvironment& own) { own.move(x); });
-          },
-          py::arg("positions"), doc("SharedEnvironment::move"));
+          about("SharedEnvironment::add", "Returns uint8 (n,) of Place."));
+  method(c, "move", &SharedEnvironment::move);
   bind_steps(c);
 }
 

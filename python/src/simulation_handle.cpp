@@ -28,8 +28,8 @@ WallResponse response_of(const py::handle& given) {
   py::detail::make_caster<WallResponse> caster;
   if (!caster.load(given, true)) {
     throw py::type_error(
-        "responses: expected a response such as dartcast.Reflect(0.5), a dict of them by the names of "
-        "patches, or dartcast.WallResponses; got " +
+        "responses: expected a response such as dartcast.Reflect(0.5), a dict of them by the names of patches, or "
+        "dartcast.WallResponses; got " +
         py::repr(given).cast<std::string>());
   }
   return py::detail::cast_op<WallResponse&>(caster);

@@ -2,12 +2,13 @@
 #pragma once
 
 #include <memory>
-#include <optional>
+#include <utility>
 
 #include "dartcast/scene.hpp"
 #include "dartcast/simulation.hpp"
 #include "ranks.hpp"
 #include "support/handles.hpp"
+#include "support/members.hpp"
 #include "support/python.hpp"
 
 namespace dartcast::python {
@@ -44,6 +45,18 @@ struct SimulationHandle {
 
   [[nodiscard]] Simulation& get() const { return owner->simulation(); }
   [[nodiscard]] Use use() const { return Use(*environment->usage, "the Simulation"); }
+  /// Calls f(simulation) while it is in use; to change it, without Python's lock.
+  template <class F>
+  auto change(const F& f) const {
+    const Use held = use();
+    const pybind11::gil_scoped_release release;
+    return f(get());
+  }
+  template <class F>
+  auto call(const F& f) const {
+    const Use held = use();
+    return f(std::as_const(get()));
+  }
 };
 
 /// A function that gets the environment at the end of each edit, and can read it until it returns; nothing

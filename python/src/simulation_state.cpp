@@ -1,5 +1,6 @@
 // The state of a simulation in Python: copies of its arrays, its bodies and catheters, its sums.
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -17,48 +18,6 @@ namespace {
 using Handle = SimulationHandle;
 using Class = py::class_<Handle, std::shared_ptr<Handle>>;
 
-// A property: f(simulation) is a copy.
-template <class F>
-auto property(F&& f) {
-  return [f](const Handle& self) {
-    const Use use = self.use();
-    auto value = f(std::as_const(self.get()));
-    if constexpr (std::is_base_of_v<py::object, decltype(value)>) {
-      return without_writing(std::move(value));
-    } else {
-      return without_writing(py::cast(std::move(value)));
-    }
-  };
-}
-// The same without Python's lock: for what takes long, and for fresh results.
-template <class F>
-auto computed(F&& f) {
-  return [f](const Handle& self) {
-    const Use use = self.use();
-    const py::gil_scoped_release release;
-    return f(std::as_const(self.get()));
-  };
-}
-
-py::array statuses(std::span<const ParticleStatus> fates) {
-  std::vector<std::uint8_t> numbers(fates.size());
-  std::transform(fates.begin(), fates.end(), numbers.begin(), [](auto s) { return static_cast<std::uint8_t>(s); });
-  return array_of(std::move(numbers));
-}
-
-py::array positions(const Simulation& s) {
-  const auto states = s.particles().states();
-  std::vector<Vec3> points(states.size());
-  std::transform(states.begin(), states.end(), points.begin(), [](const ParticleState& p) { return p.position; });
-  return array_of(std::span<const Vec3>(points));
-}
-
-py::array marks_of(std::span<const std::uint8_t> held) {
-  py::array_t<bool> made(static_cast<py::ssize_t>(held.size()));
-  std::transform(held.begin(), held.end(), made.mutable_data(), [](std::uint8_t h) { return h != 0; });
-  return made;
-}
-
 void check_particle(const Simulation& s, std::size_t particle) {
   if (particle >= s.particles().size()) {
     throw InvalidArgument("there is no particle " + std::to_string(particle) + ": there are " +
@@ -66,7 +25,7 @@ void check_particle(const Simulation& s, std::size_t particle) {
   }
 }
 
-py::array user_data(const Handle& self, std::size_t particle) {
+py::array_t<double> user_data(const Handle& self, std::size_t particle) {
   const Use use = self.use();
   check_particle(self.get(), particle);
   return array_of(std::as_const(self.get()).user_data(particle));
@@ -83,10 +42,11 @@ void set_user_data(Handle& self, std::size_t particle, const std::vector<double>
   std::copy(values.begin(), values.end(), own.begin());
 }
 
-std::shared_ptr<BodiesHandle> bodies(const Handle& self) {
+std::optional<std::shared_ptr<BodiesHandle>> bodies(const Handle& self) {
   const Use use = self.use();
   Bodies* const found = self.get().bodies();
-  return found != nullptr ? lent(self.environment, self.owner, found) : nullptr;
+  if (found == nullptr) return {};
+  return lent(self.environment, self.owner, found);
 }
 
 void check_catheter(const Simulation& s, std::size_t i) {
@@ -109,100 +69,82 @@ CatheterStep catheter_step(const Handle& self, std::size_t i) {
   return self.get().catheter_step(i);
 }
 
-void bind_particles(Class& simulation) {
-  simulation
-      .def_property_readonly(
-          "particles", property([](const Simulation& s) {
-            auto copy = std::make_shared<ParticlesHandle>();
-            copy->particles = s.particles();
-            return copy;
-          }),
-          "A copy of the particles: a set of its own. For their positions alone: Simulation.positions.")
-      .def_property_readonly("positions", property([](const Simulation& s) { return positions(s); }),
-                             "Of all particles, float64 (n, 3).")
-      .def_property_readonly("ids", property([](const Simulation& s) { return array_of(s.ids()); }), "uint64 (n,).")
-      .def_property_readonly("velocities", property([](const Simulation& s) { return array_of(s.velocities()); }),
-                             "float64 (n, 3).")
-      .def_property_readonly("fates", property([](const Simulation& s) { return statuses(s.fates()); }),
-                             "uint8 (n,): values of ParticleStatus.")
-      .def_property_readonly("contact_counts",
-                             property([](const Simulation& s) { return array_of(s.contact_counts()); }), "uint32 (n,).")
-      .def_property_readonly("radii", property([](const Simulation& s) { return array_of(s.radii()); }),
-                             "float64 (n,).")
-      .def_property_readonly("held", property([](const Simulation& s) { return marks_of(s.held()); }),
-                             (std::string(doc("Simulation::held")) + "\n\nbool (n,).").c_str());
-  simulation
-      .def("user_data", &user_data, py::arg("particle"),
-           (std::string(doc("Simulation::user_data")) + "\n\nA copy: set_user_data() changes them.").c_str())
-      .def("set_user_data", &set_user_data, py::arg("particle"), py::arg("values"),
-           "Sets the particle's numbers, one for each name in SimulationOptions.user_data.");
+std::vector<Vec3> positions(const Simulation& s) {
+  std::vector<Vec3> points;
+  for (const ParticleState& p : s.particles().states()) points.push_back(p.position);
+  return points;
 }
 
-void bind_solids(Class& simulation) {
-  simulation
-      .def_property_readonly("bodies", &bodies,
-                             "The bodies; None where no body has been added. Set their velocities between steps; the "
-                             "simulation steps them.")
-      .def_property_readonly("bodies_step", property([](const Simulation& s) { return BodiesStep(s.bodies_step()); }),
-                             "The last one.")
-      .def_property_readonly("catheter_count", property([](const Simulation& s) { return s.catheter_count(); }),
-                             "The number of catheters.")
-      .def("catheter", &catheter, py::arg("i"), "A catheter, which the simulation steps.")
-      .def("catheter_step", &catheter_step, py::arg("i"), doc("Simulation::catheter_step"))
-      .def("body_summaries", computed([](const Simulation& s) { return s.body_summaries(); }),
-           doc("Simulation::body_summaries"))
-      .def_property_readonly(
-          "solids",
-          [](const Handle& self) -> py::object {
-            const Use use = self.use();
-            const SolidSet* solids = self.get().solids();
-            // Only its handle's reading functions reach the solids of a simulation.
-            return solids == nullptr ? py::object(py::none())
-                                     : py::cast(lent(self.environment, self.owner, const_cast<SolidSet*>(solids)));
-          },
-          "The solids, which the simulation moves; None where there are none.")
-      .def_property_readonly("solids_step", property([](const Simulation& s) { return SolidStep(s.solids_step()); }),
-                             "A copy of the last step of the solids.")
-      .def("solid_summaries", computed([](const Simulation& s) { return s.solid_summaries(); }),
-           "The solids, by number.")
-      .def("catheter_summaries", computed([](const Simulation& s) { return s.catheter_summaries(); }),
-           "By the order of adding.");
+// Only its handle's reading functions reach the solids of a simulation.
+Typed<"SolidSet | None"> solids(const Handle& self) {
+  const Use use = self.use();
+  auto* const found = const_cast<SolidSet*>(self.get().solids());
+  return found == nullptr ? py::object(py::none()) : py::cast(lent(self.environment, self.owner, found));
 }
 
-void bind_sums(Class& simulation) {
-  simulation
-      .def_property_readonly("statistics", property([](const Simulation& s) { return Statistics(s.statistics()); }),
-                             "A copy of the statistics so far; empty where none are kept.")
-      .def_property_readonly("statistics_options",
-                             property([](const Simulation& s) { return StatisticsOptions(s.statistics_options()); }),
-                             "A copy.")
-      .def_property_readonly("totals", property([](const Simulation& s) { return SimulationTotals(s.totals()); }),
-                             "Sums over all steps so far: a copy.")
-      .def_property_readonly("seconds_solids", property([](const Simulation& s) { return s.seconds_solids(); }),
-                             doc("Simulation::seconds_solids"))
-      .def_property_readonly("event_log", property([](const Simulation& s) { return EventLog(s.event_log()); }),
-                             "A copy.")
-      .def("energy", computed([](const Simulation& s) { return s.energy(); }), doc("Simulation::energy"))
-      .def("audit", computed([](const Simulation& s) { return s.audit(); }), doc("Simulation::audit"))
-      .def("state_hash", computed([](const Simulation& s) { return s.state_hash(); }), doc("Simulation::state_hash"));
+py::array_t<bool> held(const Handle& self) {
+  const Use use = self.use();
+  const auto marks = self.get().held();
+  py::array_t<bool> made(static_cast<py::ssize_t>(marks.size()));
+  std::transform(marks.begin(), marks.end(), made.mutable_data(), [](std::uint8_t h) { return h != 0; });
+  return read_only(made);
+}
+
+void bind_particles(Class& c) {
+  property(c, "particles", &Simulation::particles,
+           "A copy of the particles: a set of its own. For their positions alone: Simulation.positions.");
+  property(c, "positions", &positions, "Of all particles, float64 (n, 3).");
+  property(c, "ids", &Simulation::ids, "uint64 (n,).");
+  property(c, "velocities", &Simulation::velocities, "float64 (n, 3).");
+  property(c, "fates", &Simulation::fates, "uint8 (n,): values of ParticleStatus.");
+  property(c, "contact_counts", &Simulation::contact_counts, "uint32 (n,).");
+  property(c, "radii", &Simulation::radii, "float64 (n,).");
+  c.def_property_readonly("held", &held, about("Simulation::held", "bool (n,)."));
+  c.def("user_data", &user_data, py::arg("particle"),
+        about("Simulation::user_data", "A copy: set_user_data() changes them."));
+  c.def("set_user_data", &set_user_data, py::arg("particle"), py::arg("values"),
+        "Sets the particle's numbers, one for each name in SimulationOptions.user_data.");
+}
+
+void bind_solids(Class& c) {
+  c.def_property_readonly(
+      "bodies", &bodies,
+      "The bodies; None where no body has been added. Set their velocities between steps; the simulation steps them.");
+  property(c, "bodies_step", &Simulation::bodies_step, "The last one.");
+  property(c, "catheter_count", &Simulation::catheter_count, "The number of catheters.");
+  c.def("catheter", &catheter, py::arg("i"), "A catheter, which the simulation steps.");
+  c.def("catheter_step", &catheter_step, py::arg("i"), doc("Simulation::catheter_step"));
+  long_method(c, "body_summaries", &Simulation::body_summaries);
+  c.def_property_readonly("solids", &solids, "The solids, which the simulation moves; None where there are none.");
+  property(c, "solids_step", &Simulation::solids_step, "A copy of the last step of the solids.");
+  long_method(c, "solid_summaries", &Simulation::solid_summaries, "The solids, by number.");
+  long_method(c, "catheter_summaries", &Simulation::catheter_summaries, "By the order of adding.");
+}
+
+void bind_sums(Class& c) {
+  property(c, "statistics", &Simulation::statistics, "A copy of the statistics so far; empty where none are kept.");
+  property(c, "statistics_options", &Simulation::statistics_options, "A copy.");
+  property(c, "totals", &Simulation::totals, "Sums over all steps so far: a copy.");
+  property(c, "seconds_solids", &Simulation::seconds_solids);
+  property(c, "event_log", &Simulation::event_log, "A copy.");
+  long_method(c, "energy", &Simulation::energy);
+  long_method(c, "audit", &Simulation::audit);
+  long_method(c, "state_hash", &Simulation::state_hash);
 }
 
 }  // namespace
 
-void bind(Class& simulation) {
-  simulation
-      .def_property_readonly("options", property([](const Simulation& s) { return SimulationOptions(s.options()); }),
-                             "A copy.")
-      .def_property_readonly("time", property([](const Simulation& s) { return s.time(); }), "s: steps times dt.")
-      .def_property_readonly("steps", property([](const Simulation& s) { return s.steps(); }), "Steps done.")
-      .def_property_readonly(
-          "environment", [](const Handle& self) { return self.environment; },
-          "The environment. It can be read; the simulation alone changes it.")
-      .def_property_readonly("deforms", property([](const Simulation& s) { return s.deforms(); }),
-                             "Whether it has a deformation.");
-  bind_particles(simulation);
-  bind_solids(simulation);
-  bind_sums(simulation);
+void bind(Class& c) {
+  property(c, "options", &Simulation::options, "A copy.");
+  property(c, "time", &Simulation::time, "s: steps times dt.");
+  property(c, "steps", &Simulation::steps, "Steps done.");
+  c.def_property_readonly(
+      "environment", [](const Handle& self) { return self.environment; },
+      "The environment. It can be read; the simulation alone changes it.");
+  property(c, "deforms", &Simulation::deforms, "Whether it has a deformation.");
+  bind_particles(c);
+  bind_solids(c);
+  bind_sums(c);
 }
 
 }  // namespace dartcast::python::simulation_state

@@ -2,11 +2,9 @@
 #include "dartcast/solids.hpp"
 
 #include <string>
-#include <utility>
 
 #include "bind.hpp"
 #include "bodies_handle.hpp"
-#include "support/meshes.hpp"
 #include "support/rows.hpp"
 
 namespace py = pybind11;
@@ -41,7 +39,8 @@ py::array_t<std::uint32_t> array_of_rows(const std::vector<std::array<std::uint3
   return made;
 }
 
-SolidMesh make_mesh(const py::object& points, const py::object& edges, const py::object& triangles) {
+SolidMesh make_mesh(const Typed<"Points">& points, const Typed<"Integers | Sequence[Sequence[int]] | None">& edges,
+                    const Typed<"Integers | Sequence[Sequence[int]] | None">& triangles) {
   const auto x = vectors(points, "points");
   return {{x.begin(), x.end()}, rows_of_numbers<2>(edges, "edges"), rows_of_numbers<3>(triangles, "triangles")};
 }
@@ -57,39 +56,16 @@ void bind_mesh(py::module_& m) {
           "edges", [](const SolidMesh& s) { return array_of_rows(s.edges); }, "A copy: uint32 (n, 2).")
       .def_property_readonly(
           "triangles", [](const SolidMesh& s) { return array_of_rows(s.triangles); }, "A copy: uint32 (n, 3).");
-  const auto from_mesh = [&](const char* name, SolidMesh (*make)(const MeshData&)) {
-    m.def(
-        name,
-        [make](const MeshData& mesh) {
-          const MeshData own = mesh;
-          const py::gil_scoped_release release;
-          return make(own);
-        },
-        py::arg("mesh"), doc(name));
-  };
-  from_mesh("solid_of_surface", &solid_of_surface);
-  from_mesh("solid_of_cells", &solid_of_cells);
-  m.def(
-      "solid_of_polyline", [](const py::object& points) { return solid_of_polyline(vectors(points, "points")); },
-      py::arg("points"), doc("solid_of_polyline"));
+  static constexpr std::array<Argument, 1> mesh = {{{"mesh"}}};
+  function(m, "solid_of_surface", &solid_of_surface, {doc("solid_of_surface"), mesh});
 }
 
 void bind_records(py::module_& m) {
-  bind_enum<SolidRefusal>(m, "SolidRefusal",
-                          {{"NONE", SolidRefusal::none},
-                           {"VERTEX_NOT_FREE", SolidRefusal::vertex_not_free},
-                           {"MEETS_WALL", SolidRefusal::meets_wall},
-                           {"ENCLOSES_WALL", SolidRefusal::encloses_wall},
-                           {"CELL_NOT_POSITIVE", SolidRefusal::cell_not_positive}});
-  bind_enum<SolidContactKind>(m, "SolidContactKind",
-                              {{"VERTEX_FACE", SolidContactKind::vertex_face},
-                               {"EDGE_EDGE", SolidContactKind::edge_edge},
-                               {"FACE_VERTEX", SolidContactKind::face_vertex}});
   py::class_<SolidPlacement>(m, "SolidPlacement", doc("SolidPlacement"))
       .def_readonly("refusal", &SolidPlacement::refusal, "Why the place is refused; NONE: it is not.")
       .def_property_readonly(
           "solid",
-          [](const SolidPlacement& p) { return p.solid == 0xffffffffU ? py::object(py::none()) : py::cast(p.solid); },
+          [](const SolidPlacement& p) { return p.solid == 0xffffffffU ? std::nullopt : std::optional(p.solid); },
           "Its index in the set; None where it is not added.")
       .def_property_readonly(
           "vertices",
@@ -97,49 +73,6 @@ void bind_records(py::module_& m) {
             return std::vector<std::uint32_t>(p.vertices.begin(), p.vertices.begin() + p.count);
           },
           "The vertices of the place where it is refused: numbers in the solid.");
-  Record<SolidStepOptions>(m, "SolidStepOptions")
-      .field("rounds", &SolidStepOptions::rounds)
-      .field("iterations", &SolidStepOptions::iterations)
-      .field("separation", &SolidStepOptions::separation)
-      .finish();
-  py::class_<SolidAudit>(m, "SolidAudit", doc("SolidAudit"))
-      .def_readonly("checked", &SolidAudit::checked, doc("SolidAudit::checked"))
-      .def_readonly("failed", &SolidAudit::failed, doc("SolidAudit::failed"))
-      .def_readonly("first", &SolidAudit::first, doc("SolidAudit::first"));
-}
-
-void bind_step_report(py::module_& m) {
-  py::class_<SolidStep>(m, "SolidStep", doc("SolidStep"))
-      .def_property_readonly(
-          "contacts", [](const SolidStep& s) { return rows_of(s.contacts); },
-          "Contacts that changed the motion, by solid, then by time, as a structured array: solid, kind "
-          "(SolidContactKind), count (of the vertices), wall_kind (Kind), vertices (numbers in the solid), weights, "
-          "cell, "
-          "face, triangle and dart (of the wall, in the free cell), patch, time_of_impact, gap, point (of the solid, "
-          "at "
-          "the end of the step), wall_point, normal (unit, from the wall to the solid's side), displacement (of the "
-          "place "
-          "on the solid, to the targets), wall_displacement.")
-      .def_property_readonly(
-          "made", [](const SolidStep& s) { return array_of(std::span<const double>(s.made)); }, doc("SolidStep::made"))
-      .def_readonly("walls_made", &SolidStep::walls_made, doc("SolidStep::walls_made"))
-      .def_readonly("corrected", &SolidStep::corrected, doc("SolidStep::corrected"))
-      .def_readonly("cut", &SolidStep::cut, doc("SolidStep::cut"))
-      .def_property_readonly(
-          "held", [](const SolidStep& s) { return array_of(std::span<const std::uint32_t>(s.held)); },
-          doc("SolidStep::held"))
-      .def_readonly("rounds", &SolidStep::rounds, doc("SolidStep::rounds"))
-      .def_readonly("pairs", &SolidStep::pairs, doc("SolidStep::pairs"));
-}
-
-// A checkpoint cannot be made or changed in Python.
-void bind_checkpoint(py::module_& m) {
-  py::class_<SolidCheckpoint>(m, "SolidCheckpoint", doc("SolidCheckpoint"))
-      .def_property_readonly(
-          "states", [](const SolidCheckpoint& c) { return without_writing(py::cast(c.states)); }, "Of all vertices.")
-      .def_property_readonly(
-          "held_weights", [](const SolidCheckpoint& c) { return without_writing(py::cast(c.held_weights)); },
-          "Of all vertices.");
 }
 
 std::shared_ptr<Handle> make_set(const std::shared_ptr<EnvironmentHandle>& environment) {
@@ -151,15 +84,7 @@ std::shared_ptr<Handle> make_set(const std::shared_ptr<EnvironmentHandle>& envir
   return made;
 }
 
-SolidPlacement add(Handle& self, const SolidMesh& mesh) {
-  const SolidMesh own = mesh;
-  const Use use = self.use();
-  SolidSet& solids = self.changeable();
-  const py::gil_scoped_release release;
-  return solids.add(own);
-}
-
-SolidStep advance(Handle& self, const py::object& given, const SolidStepOptions& options) {
+SolidStep advance(Handle& self, const Typed<"Points">& given, const SolidStepOptions& options) {
   const auto x = vectors(given, "targets");
   const std::vector<Vec3> targets(x.begin(), x.end());
   const SolidStepOptions chosen = options;
@@ -170,7 +95,7 @@ SolidStep advance(Handle& self, const py::object& given, const SolidStepOptions&
   return solids.advance(targets, chosen);
 }
 
-SolidStep move_with(Handle& self, const py::object& given, const py::object& given_positions,
+SolidStep move_with(Handle& self, const Typed<"Points">& given, const Typed<"Points">& given_positions,
                     const SolidStepOptions& options) {
   const auto x = vectors(given, "targets");
   const std::vector<Vec3> targets(x.begin(), x.end());
@@ -186,88 +111,28 @@ SolidStep move_with(Handle& self, const py::object& given, const py::object& giv
   return step;
 }
 
-// A function of the set, whose result is a copy.
-template <class F>
-auto of_set(F&& f) {
-  return [f](const Handle& self) {
-    const Use use = self.use();
-    return f(std::as_const(*self.solid));
-  };
+void bind_changes(Class& c) {
+  c.def(py::init(&make_set), py::arg("environment").none(false), doc("SolidSet::SolidSet"))
+      .def("advance", &advance, about("SolidSet::advance", "targets: float64 (n, 3)."))
+      .def("move_with", &move_with, about("SolidSet::move_with", "targets, positions: float64 (n, 3)."));
+  method(c, "add", &SolidSet::add);
+  method(c, "remove", &SolidSet::remove);
+  method(c, "update_after_edit", &SolidSet::update_after_edit);
+  method(c, "set_inverse_masses", &SolidSet::set_inverse_masses);
+  method(c, "restore", &SolidSet::restore);
 }
 
-void bind_changes(Class& solids) {
-  const auto change = [](auto f) {
-    return [f](Handle& self) {
-      const Use use = self.use();
-      SolidSet& set = self.changeable();
-      const py::gil_scoped_release release;
-      return f(set);
-    };
-  };
-  solids.def(py::init(&make_set), py::arg("environment").none(false), doc("SolidSet::SolidSet"))
-      .def("add", &add, py::arg("mesh"), doc("SolidSet::add"))
-      .def(
-          "remove",
-          [](Handle& self, std::uint32_t solid) {
-            const Use use = self.use();
-            self.changeable().remove(solid);
-          },
-          py::arg("solid"), doc("SolidSet::remove"))
-      .def("update_after_edit", change([](SolidSet& s) { return s.update_after_edit(); }),
-           doc("SolidSet::update_after_edit"))
-      .def(
-          "set_inverse_masses",
-          [](Handle& self, const py::object& given) {
-            const auto values = numbers(given, "inverse_masses");
-            const Use use = self.use();
-            self.changeable().set_inverse_masses(values);
-          },
-          py::arg("inverse_masses"), (std::string(doc("SolidSet::set_inverse_masses")) + "\n\nfloat64 (n,).").c_str())
-      .def("advance", &advance, py::arg("targets"), py::arg("options") = SolidStepOptions{},
-           (std::string(doc("SolidSet::advance")) + "\n\ntargets: float64 (n, 3).").c_str())
-      .def("move_with", &move_with, py::arg("targets"), py::arg("positions"), py::arg("options") = SolidStepOptions{},
-           (std::string(doc("SolidSet::move_with")) + "\n\ntargets, positions: float64 (n, 3).").c_str());
-}
-
-void bind_state(Class& solids) {
-  solids.def("__len__", of_set([](const SolidSet& s) { return s.size(); }), "The number of solids.")
-      .def_property_readonly("size", of_set([](const SolidSet& s) { return s.size(); }), "The number of solids.")
-      .def_property_readonly("positions", of_set([](const SolidSet& s) { return array_of(s.positions()); }),
-                             (std::string(doc("SolidSet::positions")) + "\n\nA copy: float64 (n, 3).").c_str())
-      .def_property_readonly("first_vertices", of_set([](const SolidSet& s) { return array_of(s.first_vertices()); }),
-                             (std::string(doc("SolidSet::first_vertices")) + "\n\nA copy.").c_str())
-      .def_property_readonly("particles", of_set([](const SolidSet& s) {
-                               auto copy = std::make_shared<ParticlesHandle>();
-                               copy->particles = s.particles();
-                               return copy;
-                             }),
-                             (std::string(doc("SolidSet::particles")) + "\n\nA copy.").c_str())
-      .def_property_readonly("stuck", of_set([](const SolidSet& s) {
-                               return std::vector<SolidPlacement>(s.stuck().begin(), s.stuck().end());
-                             }),
-                             doc("SolidSet::stuck"))
-      .def_property_readonly(
-          "environment", [](const Handle& self) { return self.environment; }, "The environment.")
-      .def("checkpoint", of_set([](const SolidSet& s) { return s.checkpoint(); }), "The state, for restore().")
-      .def(
-          "restore",
-          [](Handle& self, const SolidCheckpoint& saved) {
-            const SolidCheckpoint own = saved;
-            const Use use = self.use();
-            SolidSet& set = self.changeable();
-            const py::gil_scoped_release release;
-            set.restore(own);
-          },
-          py::arg("saved"), doc("SolidSet::restore"))
-      .def(
-          "audit",
-          [](const Handle& self) {
-            const Use use = self.use();
-            const SolidSet& set = *self.solid;
-            const py::gil_scoped_release release;
-            return set.audit();
-          },
-          doc("SolidSet::audit"));
+void bind_state(Class& c) {
+  c.def("__len__", calling<Handle>(&SolidSet::size), "The number of solids.");
+  property(c, "size", &SolidSet::size, "The number of solids.");
+  property(c, "positions", &SolidSet::positions);
+  property(c, "first_vertices", &SolidSet::first_vertices);
+  property(c, "particles", &SolidSet::particles);
+  property(c, "stuck", &SolidSet::stuck);
+  c.def_property_readonly(
+      "environment", [](const Handle& self) { return self.environment; }, "The environment.");
+  method(c, "checkpoint", &SolidSet::checkpoint, "The state, for restore().");
+  long_method(c, "audit", &SolidSet::audit);
 }
 
 }  // namespace
@@ -275,8 +140,6 @@ void bind_state(Class& solids) {
 void bind(py::module_& m) {
   bind_mesh(m);
   bind_records(m);
-  bind_step_report(m);
-  bind_checkpoint(m);
   Class solids(m, "SolidSet", doc("SolidSet"));
   bind_changes(solids);
   bind_state(solids);

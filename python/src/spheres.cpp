@@ -21,10 +21,9 @@ std::vector<double> copied(const py::object& given, const char* name) {
   return {values.begin(), values.end()};
 }
 
-SphereReport advance(StepperHandle& s, const EnvironmentHandle& h, ParticlesHandle& p, const py::object& given_radii,
-                     const py::object& given, const py::object& respond, const py::object& velocities,
-                     const py::object& statuses, const py::object& dt, const py::object& acceleration, bool per_contact,
-                     const StepOptions& options, const py::object& given_clearances) {
+SphereReport advance(StepperHandle& s, const EnvironmentHandle& h, ParticlesHandle& p,
+                     const Typed<"Floats">& given_radii, const Typed<"Points">& given, DARTCAST_RESPOND_PARAMETERS,
+                     const Typed<"Floats | None">& given_clearances) {
   const RespondArguments arguments{respond, velocities, statuses, dt, acceleration, per_contact};
   const Targets targets(given, arguments);
   const auto radii = copied(given_radii, "radii");
@@ -48,9 +47,7 @@ struct SimultaneousHandle {
 };
 
 StepReport advance_simultaneously(SimultaneousHandle& s, const EnvironmentHandle& h, ParticlesHandle& p,
-                                  const py::object& given, const py::object& respond, const py::object& velocities,
-                                  const py::object& statuses, const py::object& dt, const py::object& acceleration,
-                                  bool per_contact, const StepOptions& options) {
+                                  const Typed<"Points">& given, DARTCAST_RESPOND_PARAMETERS) {
   const RespondArguments arguments{respond, velocities, statuses, dt, acceleration, per_contact};
   const Targets targets(given, arguments);
   const Use use_stepper(s.usage, "the SimultaneousStepper");
@@ -64,10 +61,8 @@ StepReport advance_simultaneously(SimultaneousHandle& s, const EnvironmentHandle
   return s.stepper.advance(e, p.particles, targets.get(), each, chosen);
 }
 
-SphereReport advance_once(const EnvironmentHandle& h, ParticlesHandle& p, const py::object& radii,
-                          const py::object& targets, const py::object& respond, const py::object& velocities,
-                          const py::object& statuses, const py::object& dt, const py::object& acceleration,
-                          bool per_contact, const StepOptions& options) {
+SphereReport advance_once(const EnvironmentHandle& h, ParticlesHandle& p, const Typed<"Floats">& radii,
+                          const Typed<"Points">& targets, DARTCAST_RESPOND_PARAMETERS) {
   StepperHandle once;
   return advance(once, h, p, radii, targets, respond, velocities, statuses, dt, acceleration, per_contact, options,
                  py::none());
@@ -79,14 +74,6 @@ void bind(py::module_& m) {
   const std::string arguments =
       "\n\nradii: float64 (n,). targets: float64 (n, 3). The other arguments are as in Environment.advance(), but a "
       "function answers one contact at a time.";
-  py::class_<SphereReport>(m, "SphereReport", "The report of a step of spheres.")
-      .def_readonly("step", &SphereReport::step, doc("SphereReport::step"))
-      .def_property_readonly(
-          "overlaps", [](const SphereReport& r) { return rows_of(r.overlaps); },
-          "Walls that spheres overlapped at the start of their step, by particle, then the deepest first, as a "
-          "structured array: particle, cell and face (of the free cell), depth (radius - distance), left (largest "
-          "depth, in any wall, after the sphere was moved out; 0: none), point (on the wall), normal (unit, from the "
-          "point to the centre).");
   py::class_<StepperHandle>(m, "SphereStepper", doc("SphereStepper"))
       .def(py::init<>())
       .def("advance", &advance, py::arg("environment"), py::arg("particles"), py::arg("radii"), py::arg("targets"),
@@ -94,13 +81,11 @@ void bind(py::module_& m) {
            (std::string(doc("SphereStepper::advance")) + arguments).c_str());
   py::class_<SimultaneousHandle>(m, "SimultaneousStepper", doc("SimultaneousStepper"))
       .def(py::init<>())
-      .def(
-          "advance", &advance_simultaneously, py::arg("environment"), py::arg("particles"), py::arg("targets"),
-          DARTCAST_RESPOND_ARGUMENTS,
-          (std::string(doc("SimultaneousStepper::advance")) + "\n\ntargets: float64 (n, 3). The other arguments are as "
-                                                              "in Environment.advance(), but a function answers one "
-                                                              "contact at a time.")
-              .c_str());
+      .def("advance", &advance_simultaneously, py::arg("environment"), py::arg("particles"), py::arg("targets"),
+           DARTCAST_RESPOND_ARGUMENTS,
+           about("SimultaneousStepper::advance",
+                 "targets: float64 (n, 3). The other arguments are as in Environment.advance(), but a function answers "
+                 "one contact at a time."));
   m.def("advance_spheres", &advance_once, py::arg("environment"), py::arg("particles"), py::arg("radii"),
         py::arg("targets"), DARTCAST_RESPOND_ARGUMENTS, (std::string(doc("advance_spheres")) + arguments).c_str());
 }

@@ -2,6 +2,7 @@
 #include "dartcast/step.hpp"
 
 #include "bind.hpp"
+#include "support/map_checks.hpp"
 #include "support/python.hpp"
 #include "support/rows.hpp"
 
@@ -9,33 +10,6 @@ namespace py = pybind11;
 
 namespace dartcast::python::step {
 namespace {
-
-void bind_options(py::module_& m) {
-  Record<StepOptions>(m, "StepOptions")
-      .field("max_contacts", &StepOptions::max_contacts)
-      .field("tolerance", &StepOptions::tolerance)
-      .field("max_parts", &StepOptions::max_parts)
-      .def(
-          "check", [](const StepOptions& o, const std::string& caller) { check(o, caller.c_str()); },
-          py::arg("caller") = "check", doc("check"))
-      .finish();
-}
-
-void bind_counters(py::module_& m) {
-  Record<TestCounts>(m, "TestCounts").field("tests", &TestCounts::tests).field("exact", &TestCounts::exact).finish();
-  Record<Counters> counters(m, "Counters");
-  counters.field("particle_steps", &Counters::particle_steps)
-      .field("orientation", &Counters::orientation)
-      .field("histogram", &Counters::histogram)
-      .field("forecast_kept", &Counters::forecast_kept)
-      .field("updated_by_deformation", &Counters::updated_by_deformation)
-      .field("steps_split", &Counters::steps_split)
-      .field("contacts", &Counters::contacts)
-      .field("unfinished", &Counters::unfinished)
-      .def("__iadd__", &Counters::operator+=, py::arg("other"))
-      .finish()
-      .attr("HISTOGRAM_SIZE") = Counters::histogram_size;
-}
 
 // The contacts and walls of a list, for a class that has one.
 template <class T, class Get>
@@ -55,10 +29,7 @@ void bind_contacts(py::class_<T>& c, const Get& list) {
         name,
         [list, of](const T& t, std::size_t i) {
           const ContactList& contacts = list(t);
-          if (i >= contacts.contacts.size()) {
-            throw py::index_error("there is no contact " + std::to_string(i) + ": there are " +
-                                  std::to_string(contacts.contacts.size()));
-          }
+          expect_number(i, contacts.contacts.size(), "contact");
           const std::span<const WallHit> found = of(contacts, contacts.contacts[i]);
           return std::vector<WallHit>(found.begin(), found.end());
         },
@@ -88,21 +59,6 @@ void bind_step_report(py::module_& m) {
 }
 
 void bind_trace(py::module_& m) {
-  Record<StepResult>(m, "StepResult")
-      .field("held", &StepResult::held)
-      .field("invalid_cell", &StepResult::invalid_cell)
-      .field("stopped", &StepResult::stopped)
-      .field("unused", &StepResult::unused)
-      .finish();
-  Record<Crossing>(m, "Crossing")
-      .field("time", &Crossing::time)
-      .field("point", &Crossing::point)
-      .field("from_", &Crossing::from, "from")
-      .field("to", &Crossing::to)
-      .field("kind", &Crossing::kind)
-      .field("dart", &Crossing::dart)
-      .field("contacts", &Crossing::contacts)
-      .finish();
   py::class_<Trace> c(m, "Trace", doc("Trace"));
   bind_contacts(c, [](const Trace& t) -> const ContactList& { return t.contacts; });
   const auto member = [&](const char* name, auto get) {
@@ -120,8 +76,9 @@ void bind_trace(py::module_& m) {
 }  // namespace
 
 void bind(py::module_& m) {
-  bind_options(m);
-  bind_counters(m);
+  class_of<StepOptions>().def(
+      "check", [](const StepOptions& o, const std::string& caller) { check(o, caller.c_str()); },
+      py::arg("caller") = "check", doc("check"));
   bind_step_report(m);
   bind_trace(m);
 }

@@ -2,11 +2,13 @@
 #include "dartcast/surface.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <string>
 #include <utility>
 
 #include "bind.hpp"
 #include "support/handles.hpp"
+#include "support/members.hpp"
 #include "surface_places.hpp"
 
 namespace py = pybind11;
@@ -30,7 +32,7 @@ std::shared_ptr<MapHandle> map_of(const std::shared_ptr<Handle>& self) {
   return handle;
 }
 
-void move(Handle& self, const py::object& positions, Threads threads) {
+void move(Handle& self, const Typed<"Points">& positions, Threads threads) {
   const SurfaceUse use(self);
   const auto x = vectors(positions, "positions");
   const py::gil_scoped_release release;
@@ -38,38 +40,26 @@ void move(Handle& self, const py::object& positions, Threads threads) {
   ++self.version;
 }
 
-// One row a triangle: the cell and the number of the simplex.
-struct TriangleRow {
-  std::uint32_t cell;
-  std::uint16_t simplex;
-};
-
-py::array_t<TriangleRow> triangles(Handle& self) {
-  const SurfaceUse use(self);
-  std::vector<TriangleRow> rows;
-  for (const SimplexId t : self.surface.triangles()) rows.push_back({t.cell.value, t.simplex});
-  return array_of(std::move(rows));
-}
-
-// Calls a function of the surface for a triangle that exists.
+// A triangle that exists.
 template <class F>
-auto of_triangle(Handle& self, SimplexId t, const char* caller, F&& f) {
-  const SurfaceUse use(self);
-  check_triangle(self.surface, t, caller);
-  return f(self.surface);
+auto of_triangle(const char* caller, F f) {
+  return [caller, f](const Handle& self, SimplexId t) {
+    return self.call([&](const Surface& surface) {
+      check_triangle(surface, t, caller);
+      return std::invoke(f, surface, t);
+    });
+  };
 }
 
-py::array_t<double> corners(Handle& self, SimplexId t) {
-  const auto found = of_triangle(self, t, "corners", [&](const Surface& s) { return s.corners(t); });
-  return array_of(std::span<const Vec3>(found));
-}
-
-AcrossEdge across(Handle& self, SimplexId t, unsigned edge) {
+AcrossEdge across(const Handle& self, SimplexId t, unsigned edge) {
   if (edge > 2) throw InvalidArgument("across: edge " + std::to_string(edge) + ": a triangle has edges 0, 1 and 2");
-  return of_triangle(self, t, "across", [&](const Surface& s) { return s.across(t, edge); });
+  return self.call([&](const Surface& surface) {
+    check_triangle(surface, t, "across");
+    return surface.across(t, edge);
+  });
 }
 
-py::object contains(Handle& self, const py::object& place) {
+Typed<"bool or NDArray[bool]"> contains(Handle& self, const Typed<"SurfacePlace or Records">& place) {
   const SurfaceUse use(self);
   if (!is_places(place)) return py::bool_(self.surface.contains(place.cast<const SurfacePlace&>()));
   const auto rows = place_rows(place, "place");
@@ -79,7 +69,7 @@ py::object contains(Handle& self, const py::object& place) {
   return found;
 }
 
-py::array_t<double> point(Handle& self, const py::object& place) {
+py::array_t<double> point(Handle& self, const Typed<"SurfacePlace | Records">& place) {
   const SurfaceUse use(self);
   if (!is_places(place)) {
     const auto& one = place.cast<const SurfacePlace&>();
@@ -97,69 +87,34 @@ py::array_t<double> point(Handle& self, const py::object& place) {
   return array_of(std::span<const Vec3>(points));
 }
 
-SurfacePlace place(Handle& self, SimplexId triangle, const std::array<double, 3>& weights) {
-  const SurfaceUse use(self);
-  return self.surface.place(triangle, weights);
-}
-
-void set_free(Handle& self, Cell face, bool free) {
-  const SurfaceUse use(self);
-  self.surface.set_free(face, free);
-}
-
-std::string with(const char* name, const char* more) { return std::string(doc(name)) + "\n\n" + more; }
-
 void bind_class(py::module_& m) {
-  PYBIND11_NUMPY_DTYPE(TriangleRow, cell, simplex);
-  py::class_<Handle, std::shared_ptr<Handle>> surface(m, "Surface", doc("Surface"));
-  surface.def(py::init(&make_surface), py::arg("mesh"), doc("Surface::Surface"))
+  py::class_<Handle, std::shared_ptr<Handle>> c(m, "Surface", doc("Surface"));
+  c.def(py::init(&make_surface), about("Surface::Surface"))
       .def_property_readonly("map", &map_of, doc("Surface::map"))
-      .def_property_readonly(
-          "positions",
-          [](Handle& self) {
-            const SurfaceUse use(self);
-            return read_only(array_of(self.surface.positions()));
-          },
-          with("Surface::positions", "A copy, float64 (n, 3).").c_str())
-      .def("move", &move, py::arg("positions"), py::arg("threads") = Threads{}, doc("Surface::move"))
-      .def("set_free", &set_free, py::arg("face"), py::arg("free"), doc("Surface::set_free"))
+      .def("move", &move, about("Surface::move"))
       .def(
-          "triangles", &triangles,
-          with("Surface::triangles", "A structured array with the fields cell (uint32) and simplex (uint16).").c_str());
-  surface
-      .def(
-          "vertices",
-          [](Handle& self, SimplexId t) {
-            return of_triangle(self, t, "vertices", [&](const Surface& s) { return s.vertices(t); });
-          },
-          py::arg("t"), doc("Surface::vertices"))
-      .def("corners", &corners, py::arg("t"), with("Surface::corners", "The positions of vertices(), (3, 3).").c_str())
-      .def("across", &across, py::arg("t"), py::arg("edge"), doc("Surface::across"))
-      .def(
-          "normal",
-          [](Handle& self, SimplexId t) {
-            return of_triangle(self, t, "normal", [&](const Surface& s) { return s.normal(t); });
-          },
-          py::arg("t"), doc("Surface::normal"));
-  surface
-      .def("contains", &contains, py::arg("place"),
-           with("Surface::contains", "place: a SurfacePlace, or an array of places; then bool (n,).").c_str())
-      .def("point", &point, py::arg("place"),
-           with("Surface::point", "place: a SurfacePlace, or an array of places; then float64 (n, 3).").c_str())
-      .def("place", &place, py::arg("triangle"), py::arg("weights"), doc("Surface::place"));
+          "triangles",
+          [](const Handle& self) { return rows_of(self.call([](const Surface& s) { return s.triangles(); })); },
+          about("Surface::triangles", "A structured array with the fields cell (uint32) and simplex (uint16)."))
+      .def("vertices", of_triangle("vertices", &Surface::vertices), about("Surface::vertices"))
+      .def("corners", of_triangle("corners", [](const Surface& s, SimplexId t) { return kept(s.corners(t)); }),
+           about("Surface::corners", "The positions of vertices(), (3, 3)."))
+      .def("across", &across, about("Surface::across"))
+      .def("normal", of_triangle("normal", &Surface::normal), about("Surface::normal"))
+      .def("contains", &contains,
+           about("Surface::contains", "place: a SurfacePlace, or an array of places; then bool (n,)."))
+      .def("point", &point,
+           about("Surface::point", "place: a SurfacePlace, or an array of places; then float64 (n, 3)."));
+  property(c, "positions", &Surface::positions);
+  method(c, "set_free", &Surface::set_free);
+  method(c, "place", &Surface::place);
 }
 
 }  // namespace
 
 void bind(py::module_& m) {
-  surface_places::bind(m);
-  Record<AcrossEdge>(m, "AcrossEdge")
-      .field("face", &AcrossEdge::face)
-      .field("triangle", &AcrossEdge::triangle)
-      .field("edge", &AcrossEdge::edge)
-      .field("wall", &AcrossEdge::wall)
-      .finish();
   bind_class(m);
+  surface_places::bind(m);
   surface_steps::bind(m);
   surface_edit::bind(m);
 }

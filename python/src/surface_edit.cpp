@@ -1,7 +1,6 @@
 // Edits of a surface as a `with` block, and the places that follow them.
 #include <memory>
 #include <optional>
-#include <string>
 #include <thread>
 #include <utility>
 
@@ -92,12 +91,13 @@ void check_report(const Surface& surface, const SurfaceEditReport& report) {
   for (const Cell c : report.map.added) {
     if (!surface.map().contains(c))
       throw InvalidArgument(
-          "followed: the report is not of this surface's last edit: every place must follow each edit "
-          "before the next one");
+          "followed: the report is not of this surface's last edit: every place must follow each edit before the next "
+          "one");
   }
 }
 
-py::object follow(SurfaceHandle& surface, const SurfaceEditReport& report, const py::object& place) {
+Typed<"SurfacePlace | None or Records"> follow(SurfaceHandle& surface, const SurfaceEditReport& report,
+                                               const Typed<"SurfacePlace or Records">& place) {
   const SurfaceUse use(surface);
   check_report(surface.surface, report);
   if (!is_places(place)) return py::cast(followed(surface.surface, report, place.cast<const SurfacePlace&>()));
@@ -109,27 +109,14 @@ py::object follow(SurfaceHandle& surface, const SurfaceEditReport& report, const
   return array_of(std::move(rows));
 }
 
-void bind_records(py::module_& m) {
-  Record<GoneTriangle>(m, "GoneTriangle")
-      .field("triangle", &GoneTriangle::triangle)
-      .field("source", &GoneTriangle::source)
-      .field("corners", &GoneTriangle::corners)
-      .finish();
-  Record<SurfaceEditReport>(m, "SurfaceEditReport")
-      .field("map", &SurfaceEditReport::map)
-      .field("gone", &SurfaceEditReport::gone)
-      .finish();
-}
-
 }  // namespace
 
 void bind(py::module_& m) {
-  bind_records(m);
-  const std::string text =
-      std::string(doc("SurfaceEdit")) +
-      "\n\nIt is a context manager: leaving its block without commit() undoes it. While it is open, the "
-      "surface can be read through `edit.map` and `edit.position()` only.";
-  py::class_<Handle, std::shared_ptr<Handle>>(m, "SurfaceEdit", text.c_str())
+  py::class_<Handle, std::shared_ptr<Handle>>(
+      m, "SurfaceEdit",
+      about("SurfaceEdit",
+            "It is a context manager: leaving its block without commit() undoes it. While it is open, the surface can "
+            "be read through `edit.map` and `edit.position()` only."))
       .def(py::init<std::shared_ptr<SurfaceHandle>>(), py::arg("surface").none(false))
       .def("__enter__", [](const std::shared_ptr<Handle>& self) { return self; })
       .def("__exit__", [](Handle& self, const py::args& /*raised*/) { self.give_up(); })
@@ -141,20 +128,19 @@ void bind(py::module_& m) {
             const Use held = self.use();
             return self.open().position(v);
           },
-          py::arg("v"), doc("SurfaceEdit::position"))
+          about("SurfaceEdit::position"))
       .def(
           "place",
           [](const Handle& self, Vertex v, const Vec3& x) {
             const Use held = self.use();
             self.open().place(v, x);
           },
-          py::arg("v"), py::arg("x"), doc("SurfaceEdit::place"))
+          about("SurfaceEdit::place"))
       .def("commit", &Handle::commit, doc("SurfaceEdit::commit"));
-  const std::string follows =
-      std::string(doc("followed")) +
-      "\n\nplace: a SurfacePlace; the answer is None where no face took the place. Or an array "
-      "of places, for which it returns an array; its cell is NONE where no face took the place.";
-  m.def("followed", &follow, py::arg("surface"), py::arg("report"), py::arg("place"), follows.c_str());
+  m.def("followed", &follow, py::arg("surface"), py::arg("report"), py::arg("place"),
+        about("followed",
+              "place: a SurfacePlace; the answer is None where no face took the place. Or an array of places, for "
+              "which it returns an array; its cell is NONE where no face took the place."));
 }
 
 }  // namespace dartcast::python::surface_edit

@@ -1,7 +1,6 @@
 // Places on a surface, one as a record and many as an array; and the search for them.
 #include "surface_places.hpp"
 
-#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -28,12 +27,14 @@ std::shared_ptr<LocatorHandle> make_locator(const std::shared_ptr<SurfaceHandle>
   return std::make_shared<LocatorHandle>(surface);
 }
 
-py::object nearest(const LocatorHandle& self, const std::shared_ptr<SurfaceHandle>& surface, const py::object& x) {
+Typed<"SurfaceLocation or tuple[Records, Floats]"> nearest(const LocatorHandle& self,
+                                                           const std::shared_ptr<SurfaceHandle>& surface,
+                                                           const Typed<"Vector or Points">& x) {
   const SurfaceUse use(*surface);
   if (self.surface != surface || self.version != surface->version) {
     throw InvalidArgument(
-        "nearest: the locator was made for another surface, or before a move or an edit of this "
-        "one: make a new SurfaceLocator");
+        "nearest: the locator was made for another surface, or before a move or an edit of this one: make a new "
+        "SurfaceLocator");
   }
   if (!py::isinstance<py::array>(x) || py::reinterpret_borrow<py::array>(x).ndim() == 1)
     return py::cast(self.locator.nearest(surface->surface, vector(x, "x")));
@@ -51,26 +52,11 @@ py::object nearest(const LocatorHandle& self, const std::shared_ptr<SurfaceHandl
   return py::make_tuple(array_of(std::move(places)), array_of(std::move(distances)));
 }
 
-py::array_t<PlaceRow> array_of_places(const std::vector<SurfacePlace>& places) {
-  std::vector<PlaceRow> rows;
-  rows.reserve(places.size());
-  for (const SurfacePlace& p : places) rows.push_back(row_of(p));
-  return array_of(std::move(rows));
-}
-
 bool is_aligned(const py::object& x) {
   return (py::detail::array_proxy(x.ptr())->flags & py::detail::npy_api::NPY_ARRAY_ALIGNED_) != 0;
 }
 
 }  // namespace
-
-PlaceRow row_of(const SurfacePlace& place) {
-  PlaceRow row{};
-  row.cell = place.triangle.cell.value;
-  row.simplex = place.triangle.simplex;
-  std::copy(place.weights.begin(), place.weights.end(), row.weights);
-  return row;
-}
 
 SurfacePlace place_of(const PlaceRow& row) {
   return {{Cell{row.cell}, row.simplex}, {row.weights[0], row.weights[1], row.weights[2]}};
@@ -124,20 +110,11 @@ void check_places(const Surface& surface, std::span<const SurfacePlace> places, 
 namespace surface_places {
 
 void bind(py::module_& m) {
-  PYBIND11_NUMPY_DTYPE(PlaceRow, cell, simplex, weights);
   m.attr("SURFACE_PLACE") = py::dtype::of<PlaceRow>();
-  Record<SurfacePlace>(m, "SurfacePlace")
-      .field("triangle", &SurfacePlace::triangle)
-      .field("weights", &SurfacePlace::weights)
-      .def_property_readonly("kind", &SurfacePlace::kind, doc("SurfacePlace::kind"))
-      .finish();
-  Record<SurfaceLocation>(m, "SurfaceLocation")
-      .field("place", &SurfaceLocation::place)
-      .field("distance", &SurfaceLocation::distance)
-      .finish();
-  m.def("surface_places", &array_of_places, py::arg("places"),
-        "An array of places from a list of SurfacePlace: a structured array of the dtype SURFACE_PLACE, with the "
-        "fields cell (uint32), simplex (uint16) and weights (3 float64).");
+  m.def(
+      "surface_places", [](const std::vector<SurfacePlace>& places) { return rows_of(places); }, py::arg("places"),
+      "An array of places from a list of SurfacePlace: a structured array of the dtype SURFACE_PLACE, with the "
+      "fields cell (uint32), simplex (uint16) and weights (3 float64).");
   m.def(
       "nearest_in_triangle",
       [](SurfaceHandle& surface, SimplexId triangle, const Vec3& x) {
@@ -145,13 +122,13 @@ void bind(py::module_& m) {
         check_triangle(surface.surface, triangle, "nearest_in_triangle");
         return nearest_in_triangle(surface.surface, triangle, x);
       },
-      py::arg("surface"), py::arg("triangle"), py::arg("x"), doc("nearest_in_triangle"));
-  const std::string text = std::string(doc("SurfaceLocator::nearest")) +
-                           "\n\nx: three numbers, for which it returns a SurfaceLocation. Or float64 (n, 3), for which "
-                           "it returns an array of places and the distances, float64 (n,).";
+      about("nearest_in_triangle"));
   py::class_<LocatorHandle, std::shared_ptr<LocatorHandle>>(m, "SurfaceLocator", doc("SurfaceLocator"))
       .def(py::init(&make_locator), py::arg("surface").none(false), doc("SurfaceLocator::SurfaceLocator"))
-      .def("nearest", &nearest, py::arg("surface").none(false), py::arg("x"), text.c_str());
+      .def("nearest", &nearest, py::arg("surface").none(false), py::arg("x"),
+           about("SurfaceLocator::nearest",
+                 "x: three numbers, for which it returns a SurfaceLocation. Or float64 (n, 3), for which it returns an "
+                 "array of places and the distances, float64 (n,)."));
 }
 
 }  // namespace surface_places

@@ -9,6 +9,7 @@
 #include "dartcast/surface.hpp"
 #include "support/in_use.hpp"
 #include "support/python.hpp"
+#include "support/rows.hpp"
 
 namespace dartcast::python {
 
@@ -20,6 +21,21 @@ struct SurfaceHandle {
   bool edited = false;        ///< an edit is open
 
   explicit SurfaceHandle(MeshData mesh) : surface(std::move(mesh)) {}
+
+  /// Calls f(surface) while it is in use; to change it, without Python's lock. Throws InvalidArgument while an edit is open.
+  template <class F>
+  auto change(const F& f) {
+    const Use use(*usage, "the Surface");
+    if (edited) throw InvalidArgument("an edit of this surface is open: end its `with` block first");
+    const pybind11::gil_scoped_release release;
+    return f(surface);
+  }
+  template <class F>
+  auto call(const F& f) const {
+    const Use use(*usage, "the Surface");
+    if (edited) throw InvalidArgument("an edit of this surface is open: end its `with` block first");
+    return f(surface);
+  }
 };
 
 /// Holds a surface for a call. Throws InvalidArgument while an edit is open.
@@ -33,14 +49,7 @@ class SurfaceUse {
   Use use_;
 };
 
-/// A row of an array of places.
-struct PlaceRow {
-  std::uint32_t cell;
-  std::uint16_t simplex;
-  double weights[3];  // NOLINT(modernize-avoid-c-arrays): an entry of an array of NumPy
-};
-
-PlaceRow row_of(const SurfacePlace& place);
+using PlaceRow = SurfacePlaceRow;
 SurfacePlace place_of(const PlaceRow& row);
 /// The row of no place: cell NONE.
 PlaceRow no_place();

@@ -1,7 +1,6 @@
 // Steps of particles on a surface: contacts, responses, one particle and many.
 #include <algorithm>
 #include <string>
-#include <utility>
 
 #include "surface_places.hpp"
 
@@ -9,75 +8,6 @@ namespace py = pybind11;
 
 namespace dartcast::python::surface_steps {
 namespace {
-
-// Rows of the arrays of many steps and contacts.
-// NOLINTBEGIN(modernize-avoid-c-arrays): entries of arrays of NumPy
-struct StepRow {
-  std::uint8_t end;
-  std::uint32_t contacts;
-  std::uint32_t crossings;
-  double length;
-  double direction[3];
-  double remaining[3];
-};
-struct ContactRow {
-  std::uint32_t particle;
-  std::uint8_t kind;
-  std::uint32_t dart_cell;
-  std::uint16_t dart;
-  std::uint16_t patch;
-  double time_of_impact;
-  PlaceRow place;
-  double point[3];
-  double normal[3];
-  double sides[2][3];
-  double displacement[3];
-  double unused[3];
-};
-// NOLINTEND(modernize-avoid-c-arrays)
-
-void put(double* out, const Vec3& v) {
-  out[0] = v.x;
-  out[1] = v.y;
-  out[2] = v.z;
-}
-
-StepRow row_of(const SurfaceStep& s) {
-  StepRow row{};
-  row.end = static_cast<std::uint8_t>(s.end);
-  row.contacts = s.contacts;
-  row.crossings = s.crossings;
-  row.length = s.length;
-  put(row.direction, s.direction);
-  put(row.remaining, s.remaining);
-  return row;
-}
-
-ContactRow row_of(const SurfaceContact& c) {
-  ContactRow row{};
-  row.particle = c.particle;
-  row.kind = static_cast<std::uint8_t>(c.kind);
-  row.dart_cell = c.dart.cell.value;
-  row.dart = c.dart.number;
-  row.patch = c.patch.value;
-  row.time_of_impact = c.time_of_impact;
-  row.place = python::row_of(c.place);
-  put(row.point, c.point);
-  put(row.normal, c.normal);
-  put(row.sides[0], c.sides[0]);
-  put(row.sides[1], c.sides[1]);
-  put(row.displacement, c.displacement);
-  put(row.unused, c.unused);
-  return row;
-}
-
-template <class Row, class T>
-py::array rows_of(const std::vector<T>& all) {
-  std::vector<Row> rows;
-  rows.reserve(all.size());
-  for (const T& one : all) rows.push_back(row_of(one));
-  return array_of(std::move(rows));
-}
 
 // The lists that a step fills for Python.
 struct TraceLists {
@@ -112,8 +42,9 @@ SurfaceContactCallback callback(const py::object& respond) {
 }
 
 // The place is changed at the end, under Python's lock, so that nobody sees half of it.
-SurfaceStep step_one(SurfaceHandle& surface, SurfacePlace& place, const Vec3& displacement, const py::object& respond,
-                     const SurfaceOptions& options, TraceLists* trace, std::uint32_t particle) {
+SurfaceStep step_one(SurfaceHandle& surface, SurfacePlace& place, const Vec3& displacement,
+                     const Typed<"SurfaceRespond | None">& respond, const SurfaceOptions& options, TraceLists* trace,
+                     std::uint32_t particle) {
   const SurfaceUse use(surface);
   const SurfaceContactCallback answer = callback(respond);
   const SurfaceOptions own_options = options;
@@ -133,8 +64,9 @@ SurfaceStep step_one(SurfaceHandle& surface, SurfacePlace& place, const Vec3& di
   return result;
 }
 
-ReportArrays advance_many(SurfaceHandle& surface, const py::object& places, const py::object& displacements,
-                          const py::object& respond, const SurfaceOptions& options, Threads threads) {
+ReportArrays advance_many(SurfaceHandle& surface, const Typed<"Records">& places, const Typed<"Points">& displacements,
+                          const Typed<"SurfaceRespond | None">& respond, const SurfaceOptions& options,
+                          Threads threads) {
   const SurfaceUse use(surface);
   const std::span<PlaceRow> rows = writable_place_rows(places, "places");
   const std::span<const Vec3> ways = vectors(displacements, "displacements");
@@ -146,8 +78,8 @@ ReportArrays advance_many(SurfaceHandle& surface, const py::object& places, cons
     const py::gil_scoped_release release;
     report = advance(surface.surface, moved, ways, answer, own_options, threads);
   }
-  std::transform(moved.begin(), moved.end(), rows.begin(), [](const SurfacePlace& p) { return python::row_of(p); });
-  return {rows_of<StepRow>(report.steps), rows_of<ContactRow>(report.contacts)};
+  std::transform(moved.begin(), moved.end(), rows.begin(), [](const SurfacePlace& p) { return row_of(p); });
+  return {rows_of(report.steps), rows_of(report.contacts)};
 }
 
 py::array_t<double> tangent_of(SurfaceHandle& surface, SimplexId triangle, unsigned corner, double angle,
@@ -157,23 +89,6 @@ py::array_t<double> tangent_of(SurfaceHandle& surface, SimplexId triangle, unsig
 }
 
 void bind_contacts(py::module_& m) {
-  Record<SurfaceContact>(m, "SurfaceContact")
-      .field("particle", &SurfaceContact::particle)
-      .field("kind", &SurfaceContact::kind)
-      .field("dart", &SurfaceContact::dart)
-      .field("patch", &SurfaceContact::patch)
-      .field("time_of_impact", &SurfaceContact::time_of_impact)
-      .field("place", &SurfaceContact::place)
-      .field("point", &SurfaceContact::point)
-      .field("normal", &SurfaceContact::normal)
-      .field("sides", &SurfaceContact::sides)
-      .field("displacement", &SurfaceContact::displacement)
-      .field("unused", &SurfaceContact::unused)
-      .finish();
-  Record<AfterSurfaceContact>(m, "AfterSurfaceContact")
-      .field("displacement", &AfterSurfaceContact::displacement)
-      .field("along", &AfterSurfaceContact::along)
-      .finish();
   m.def(
       "reflected",
       [](const SurfaceContact& contact, const Vec3& v, double restitution) {
@@ -186,30 +101,6 @@ void bind_contacts(py::module_& m) {
 }
 
 void bind_records(py::module_& m) {
-  bind_enum<SurfaceEnd>(m, "SurfaceEnd",
-                        {{"ARRIVED", SurfaceEnd::arrived},
-                         {"STOPPED", SurfaceEnd::stopped},
-                         {"LIMIT", SurfaceEnd::limit},
-                         {"HELD", SurfaceEnd::held}});
-  Record<SurfaceOptions>(m, "SurfaceOptions")
-      .field("max_contacts", &SurfaceOptions::max_contacts)
-      .field("max_crossings", &SurfaceOptions::max_crossings)
-      .finish();
-  Record<SurfaceStep>(m, "SurfaceStep")
-      .field("end", &SurfaceStep::end)
-      .field("contacts", &SurfaceStep::contacts)
-      .field("crossings", &SurfaceStep::crossings)
-      .field("length", &SurfaceStep::length)
-      .field("direction", &SurfaceStep::direction)
-      .field("remaining", &SurfaceStep::remaining)
-      .finish();
-  Record<SurfaceCrossing>(m, "SurfaceCrossing")
-      .field("time", &SurfaceCrossing::time)
-      .field("point", &SurfaceCrossing::point)
-      .field("kind", &SurfaceCrossing::kind)
-      .field("dart", &SurfaceCrossing::dart)
-      .field("place", &SurfaceCrossing::place)
-      .finish();
   py::class_<TraceLists>(m, "SurfaceTrace", doc("SurfaceTrace"))
       .def(py::init<>())
       .def_property_readonly(
@@ -229,9 +120,6 @@ void bind_records(py::module_& m) {
 }  // namespace
 
 void bind(py::module_& m) {
-  PYBIND11_NUMPY_DTYPE(StepRow, end, contacts, crossings, length, direction, remaining);
-  PYBIND11_NUMPY_DTYPE(ContactRow, particle, kind, dart_cell, dart, patch, time_of_impact, place, point, normal, sides,
-                       displacement, unused);
   bind_records(m);
   bind_contacts(m);
   const std::string answers =
@@ -242,8 +130,7 @@ void bind(py::module_& m) {
   m.def("step", &step_one, py::arg("surface"), py::arg("place"), py::arg("displacement"),
         py::arg("respond") = py::none(), py::arg("options") = SurfaceOptions{}, py::arg("trace") = nullptr,
         py::arg("particle") = 0, one.c_str());
-  m.def("tangent", &tangent_of, py::arg("surface"), py::arg("triangle"), py::arg("corner"), py::arg("angle"),
-        py::arg("length") = 1.0, doc("tangent"));
+  m.def("tangent", &tangent_of, about("tangent"));
   const std::string many =
       doc("advance") + answers + "\n\nplaces: an array of places (surface_places()), changed in place.";
   m.def("advance", &advance_many, py::arg("surface"), py::arg("places"), py::arg("displacements"),

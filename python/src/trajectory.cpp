@@ -2,7 +2,7 @@
 #include "dartcast/trajectory.hpp"
 
 #include "bind.hpp"
-#include "support/map_checks.hpp"
+#include "support/members.hpp"
 #include "support/python.hpp"
 
 namespace py = pybind11;
@@ -31,24 +31,6 @@ void expect_cells_of(const CombinatorialMap& map, const std::vector<Trace>& trac
 }  // namespace
 
 void bind(py::module_& m) {
-  bind_enum<TrajectoryMark>(m, "TrajectoryMark",
-                            {{"START", TrajectoryMark::start},
-                             {"CROSSING", TrajectoryMark::crossing},
-                             {"CONTACT", TrajectoryMark::contact},
-                             {"TARGET", TrajectoryMark::target},
-                             {"END", TrajectoryMark::end}});
-  Record<TrajectoryPoint>(m, "TrajectoryPoint")
-      .field("mark", &TrajectoryPoint::mark)
-      .field("step", &TrajectoryPoint::step)
-      .field("time", &TrajectoryPoint::time)
-      .field("point", &TrajectoryPoint::point)
-      .field("kind", &TrajectoryPoint::kind)
-      .field("cell", &TrajectoryPoint::cell)
-      .field("next", &TrajectoryPoint::next)
-      .finish();
-  m.def(
-      "trajectory_points", [](const std::vector<Trace>& traces) { return trajectory_points(traces); },
-      py::arg("traces"), doc("trajectory_points"));
   m.def(
       "trajectory_csv",
       [](const MapHandle& h, const std::vector<Trace>& traces) {
@@ -57,7 +39,7 @@ void bind(py::module_& m) {
           return trajectory_csv(map, traces);
         });
       },
-      py::arg("map"), py::arg("traces"), doc("trajectory_csv"));
+      about("trajectory_csv"));
   m.def(
       "trajectory_svg",
       [](const ComplexHandle& h, const std::vector<Trace>& traces) {
@@ -66,7 +48,7 @@ void bind(py::module_& m) {
           return trajectory_svg(complex, traces);
         });
       },
-      py::arg("complex"), py::arg("traces"), doc("trajectory_svg"));
+      about("trajectory_svg"));
 }
 
 }  // namespace dartcast::python::trajectory

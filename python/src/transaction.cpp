@@ -1,8 +1,7 @@
 // Binds the class Transaction of dartcast/map_edits.hpp, as a context manager.
 #include "transaction.hpp"
 
-#include "support/edits.hpp"
-#include "support/map_checks.hpp"
+#include "support/members.hpp"
 #include "support/python.hpp"
 
 namespace py = pybind11;
@@ -69,33 +68,10 @@ EditReport commit(const TransactionHandle& h) {
 }
 
 void bind_changes(Class& c) {
-  c.def(
-      "add_vertex",
-      [](const TransactionHandle& h, Vertex from, Vertex other) {
-        return change(h, [&](Transaction& t) {
-          expect_vertex(t.map(), from);
-          expect_vertex(t.map(), other);
-          return t.add_vertex(from, other);
-        });
-      },
-      py::arg("from_"), py::arg("other"), doc("Transaction::add_vertex"));
-  c.def("replace", &replace, py::arg("removed"), py::arg("drafts"), doc("Transaction::replace"));
-  c.def(
-      "set_free",
-      [](const TransactionHandle& h, Cell cell, bool free) {
-        change(h, [&](Transaction& t) { t.set_free(cell, free); });
-      },
-      py::arg("c"), py::arg("free"), doc("Transaction::set_free"));
-  c.def(
-      "note_merged",
-      [](const TransactionHandle& h, Vertex gone, Vertex merged_into) {
-        change(h, [&](Transaction& t) {
-          expect_vertex(t.map(), gone);
-          expect_vertex(t.map(), merged_into);
-          t.note_merged(gone, merged_into);
-        });
-      },
-      py::arg("gone"), py::arg("merged_into"), doc("Transaction::note_merged"));
+  method(c, "add_vertex", &Transaction::add_vertex);
+  c.def("replace", &replace, about("Transaction::replace"));
+  method(c, "set_free", &Transaction::set_free);
+  method(c, "note_merged", &Transaction::note_merged);
   c.def(
       "savepoint",
       [](const TransactionHandle& h) {
@@ -104,31 +80,17 @@ void bind_changes(Class& c) {
       "A point in the sequence to which roll_back() can return.");
   c.def("roll_back", &roll_back, py::arg("to") = py::none(),
         "Undoes everything after a savepoint, or since the last commit. Raises InvalidArgument where the savepoint is "
-        "none "
-        "of this transaction, or was itself undone, and where the transaction belongs to an edit of a complex.");
+        "none of this transaction, or was itself undone, and where the transaction belongs to an edit of a complex.");
   c.def("commit", &commit,
-        (std::string(doc("Transaction::commit")) +
-         "\n\nRaises InvalidArgument where the transaction belongs to an edit of a complex.")
-            .c_str());
+        about("Transaction::commit", "Raises InvalidArgument where the transaction belongs to an edit of a complex."));
 }
 
 void bind_reads(Class& c) {
-  const auto def = [&c](const char* name, const char* text, auto f) {
-    c.def(
-        name, [f](const TransactionHandle& h) { return change(h, f); }, text);
-  };
-  def("added", doc("Transaction::added"), [](const Transaction& t) { return t.added(); });
-  def("removed", "Removed cells, of those that existed at the last commit.",
-      [](const Transaction& t) { return t.removed(); });
-  def("marked", doc("Transaction::marked"), [](const Transaction& t) { return t.marked(); });
-  def("merged", "Vertices that were merged into others, as a list of MergedVertex.", [](const Transaction& t) {
-    const auto merged = t.merged();
-    return std::vector<MergedVertex>(merged.begin(), merged.end());
-  });
-  c.def_property_readonly(
-      "created_count",
-      [](const TransactionHandle& h) { return change(h, [](const Transaction& t) { return t.created_count(); }); },
-      "The number of vertices made since the last commit.");
+  method(c, "added", &Transaction::added);
+  method(c, "removed", &Transaction::removed, "Removed cells, of those that existed at the last commit.");
+  method(c, "marked", &Transaction::marked);
+  method(c, "merged", &Transaction::merged, "Vertices that were merged into others, as a list of MergedVertex.");
+  property(c, "created_count", &Transaction::created_count, "The number of vertices made since the last commit.");
   c.def(
       "created",
       [](const TransactionHandle& h, std::size_t i) {
@@ -137,7 +99,7 @@ void bind_reads(Class& c) {
           return t.created(i);
         });
       },
-      py::arg("i"), doc("Transaction::created"));
+      about("Transaction::created"));
   c.def_property_readonly(
       "map", [](const std::shared_ptr<TransactionHandle>& h) { return map_of(h); },
       "The map as it is now. It can be read until the transaction ends.");
@@ -147,10 +109,9 @@ void bind_reads(Class& c) {
 
 void bind(py::module_& m) {
   Class c(m, "Transaction",
-          (std::string(doc("Transaction")) + "\n\nA transaction on a map of its own is a context manager: leaving its "
-                                             "block without commit() undoes the edits. "
-                                             "While it is open, the map can be read through `transaction.map` only.")
-              .c_str());
+          about("Transaction",
+                "A transaction on a map of its own is a context manager: leaving its block without commit() undoes the "
+                "edits. While it is open, the map can be read through `transaction.map` only."));
   const py::class_<SavepointHandle> savepoint(c, "Savepoint", doc("Transaction::Savepoint"));
   c.def(py::init([](const std::shared_ptr<MapHandle>& map) {
           auto made = std::make_shared<TransactionHandle>();
@@ -160,8 +121,7 @@ void bind(py::module_& m) {
         }),
         py::arg("map").none(false),
         "Opens a transaction on a map of its own. Raises InvalidArgument where the map belongs to something else, and "
-        "InUse "
-        "where another transaction on it is open.");
+        "InUse where another transaction on it is open.");
   bind_changes(c);
   bind_reads(c);
   c.def("__enter__", [](const std::shared_ptr<TransactionHandle>& h) {

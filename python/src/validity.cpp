@@ -14,40 +14,10 @@ void expect_time(double time, const char* name) {
   if (!(time >= 0.0 && time <= 1.0)) throw InvalidArgument(std::string(name) + ": expected a time from 0 to 1");
 }
 
-void bind_records(py::module_& m) {
-  Record<Validity>(m, "Validity")
-      .field("cells_checked", &Validity::cells_checked)
-      .field("invalid_count", &Validity::invalid_count)
-      .field("first", &Validity::first)
-      .def_property_readonly("valid", &Validity::valid, "Whether no cell is invalid.")
-      .finish();
-  bind_enum<InversionKind>(m, "InversionKind",
-                           {{"VERTEX_FACE", InversionKind::vertex_face},
-                            {"EDGE_EDGE", InversionKind::edge_edge},
-                            {"VERTEX_EDGE", InversionKind::vertex_edge},
-                            {"VERTEX_VERTEX", InversionKind::vertex_vertex},
-                            {"LINE", InversionKind::line},
-                            {"FROM_THE_START", InversionKind::from_the_start},
-                            {"UNDECIDABLE", InversionKind::undecidable}});
-  Record<SimplexInversion>(m, "SimplexInversion")
-      .field("safe_time", &SimplexInversion::safe_time)
-      .field("kind", &SimplexInversion::kind)
-      .field("one", &SimplexInversion::one)
-      .field("other", &SimplexInversion::other)
-      .finish();
-  Record<CellInversion>(m, "CellInversion")
-      .field("simplex", &CellInversion::simplex)
-      .field("vertices", &CellInversion::vertices)
-      .field("how", &CellInversion::how)
-      .field("message", &CellInversion::message)
-      .finish();
-  m.attr("INVERSION_RESOLUTION") = inversion_resolution;
-}
-
 void bind_checks(py::module_& m) {
   m.def(
       "check_cell",
-      [](const MapHandle& h, const py::object& given, Cell c) {
+      [](const MapHandle& h, const Typed<"Points">& given, Cell c) {
         const auto positions = vectors(given, "positions");
         return read(h, [&](const CombinatorialMap& map) {
           expect_positions(map, positions.size(), "positions");
@@ -55,7 +25,7 @@ void bind_checks(py::module_& m) {
           return check_cell(map, positions, c);
         });
       },
-      py::arg("map"), py::arg("positions"), py::arg("c"), doc("check_cell"));
+      about("check_cell"));
   m.def(
       "check_validity",
       [](const ComplexHandle& h, Threads threads, std::size_t max_count) {
@@ -65,7 +35,7 @@ void bind_checks(py::module_& m) {
       py::arg("complex"), py::arg("threads") = Threads{}, py::arg("max_count") = 10, doc("check_validity"));
   m.def(
       "check_validity",
-      [](const MapHandle& h, const py::object& given, Threads threads, std::size_t max_count) {
+      [](const MapHandle& h, const Typed<"Points">& given, Threads threads, std::size_t max_count) {
         check_threads(threads);
         const auto positions = vectors(given, "positions");
         return read_long(h, [&](const CombinatorialMap& map) {
@@ -84,7 +54,7 @@ void bind_inversions(py::module_& m) {
         expect_time(until, "until");
         return find_inversion(before, after, until);
       },
-      py::arg("before"), py::arg("after"), py::arg("until") = 1.0, doc("find_inversion"));
+      about("find_inversion"));
   m.def(
       "first_inversion",
       [](const ComplexHandle& h, Threads threads) {
@@ -94,8 +64,8 @@ void bind_inversions(py::module_& m) {
       py::arg("complex"), py::arg("threads") = Threads{}, doc("first_inversion"));
   m.def(
       "first_inversion",
-      [](const MapHandle& h, const py::object& given_before, const py::object& given_after, std::optional<Cell> cell,
-         double until, Threads threads) {
+      [](const MapHandle& h, const Typed<"Points">& given_before, const Typed<"Points">& given_after,
+         std::optional<Cell> cell, double until, Threads threads) {
         check_threads(threads);
         expect_time(until, "until");
         const auto before = vectors(given_before, "before");
@@ -114,8 +84,8 @@ void bind_inversions(py::module_& m) {
       "The same for a map and any motion of its vertices: float64 (vertex_count, 3); or for one cell, up to a time.");
   m.def(
       "move_towards",
-      [](const ComplexHandle& h, const py::object& given_before, const py::object& given_after, double time,
-         Threads threads) {
+      [](const ComplexHandle& h, const Typed<"Points">& given_before, const Typed<"Points">& given_after, double time,
+         Threads threads) -> Typed<"tuple[float, Points]"> {
         check_threads(threads);
         expect_time(time, "time");
         const auto before = vectors(given_before, "before");
@@ -127,15 +97,14 @@ void bind_inversions(py::module_& m) {
         return py::make_tuple(reached, array_of(std::span<const Vec3>(positions)));
       },
       py::arg("complex"), py::arg("before"), py::arg("after"), py::arg("time"), py::arg("threads") = Threads{},
-      (std::string(doc("move_towards")) + "\n\nbefore, after: float64 (n, 3), of all vertices. Returns (time, "
-                                          "positions). The weights are those of the complex.")
-          .c_str());
+      about("move_towards",
+            "before, after: float64 (n, 3), of all vertices. Returns (time, positions). The weights are those of the "
+            "complex."));
 }
 
 }  // namespace
 
 void bind(py::module_& m) {
-  bind_records(m);
   bind_checks(m);
   bind_inversions(m);
 }

@@ -6,7 +6,7 @@
 
 #include "bind.hpp"
 #include "support/edit_reports.hpp"
-#include "support/map_checks.hpp"
+#include "support/members.hpp"
 #include "support/motions.hpp"
 #include "support/python.hpp"
 
@@ -80,37 +80,14 @@ void update_after_edit(FieldHandle& h, const ComplexEditReport& edit, const Comp
   });
 }
 
-void bind_samples(py::module_& m) {
-  bind_enum<FieldFrame>(m, "FieldFrame", {{"SPACE", FieldFrame::space}, {"MESH", FieldFrame::mesh}});
-  bind_enum<Interpolation>(m, "Interpolation", {{"LINEAR", Interpolation::linear}, {"CUBIC", Interpolation::cubic}});
-  bind_enum<FieldPlace>(m, "FieldPlace", {{"POINTS", FieldPlace::points}, {"CELLS", FieldPlace::cells}});
-  Record<FieldSamples>(m, "FieldSamples")
-      .field("name", &FieldSamples::name)
-      .field("place", &FieldSamples::place)
-      .field("times", &FieldSamples::times)
-      .field("read", &FieldSamples::read)
-      .field("period", &FieldSamples::period)
-      .field("interpolation", &FieldSamples::interpolation)
-      .finish();
-  m.def("field_samples", &field_samples, py::arg("times"), py::arg("values"), py::arg("place") = FieldPlace::points,
-        py::arg("period") = 0.0, doc("field_samples"));
-}
+void bind_samples(py::module_& m) { m.def("field_samples", &field_samples, about("field_samples")); }
 
 void bind_members(py::class_<FieldHandle, FieldPointer>& c) {
-  const auto member = [&](const char* name, const char* text, auto get) {
-    c.def_property_readonly(
-        name,
-        [get](const FieldHandle& h) {
-          const Use use(h.usage, the_field);
-          return without_writing(py::cast(get(h.field)));
-        },
-        text);
-  };
-  member("frame", doc("FieldFrame"), [](const VectorField& f) { return f.frame(); });
-  member("place", doc("FieldPlace"), [](const VectorField& f) { return f.place(); });
-  member("steady", "Whether it has one sample.", [](const VectorField& f) { return f.steady(); });
-  member("values", doc("VectorField::values"), [](const VectorField& f) { return f.values(); });
-  member("rest", doc("VectorField::rest"), [](const VectorField& f) { return f.rest(); });
+  property(c, "frame", &VectorField::frame, doc("FieldFrame"));
+  property(c, "place", &VectorField::place, doc("FieldPlace"));
+  property(c, "steady", &VectorField::steady, "Whether it has one sample.");
+  property(c, "values", &VectorField::values);
+  property(c, "rest", &VectorField::rest);
 }
 
 }  // namespace
@@ -120,7 +97,7 @@ void bind(py::module_& m) {
   py::class_<FieldHandle, FieldPointer> c(m, "VectorField", "A field of vectors at the points or cells of a mesh.");
   c.def(py::init(&make<FieldSamples>), py::arg("complex").none(false), py::arg("samples"),
         py::arg("frame") = FieldFrame::space, doc("VectorField::VectorField"));
-  c.def(py::init([](const ComplexPointer& complex, const py::object& values, FieldFrame frame) {
+  c.def(py::init([](const ComplexPointer& complex, const Typed<"Points">& values, FieldFrame frame) {
           return make(complex, vectors(values, "values"), frame);
         }),
         py::arg("complex").none(false), py::arg("values"), py::arg("frame") = FieldFrame::space,
@@ -134,13 +111,10 @@ void bind(py::module_& m) {
         const py::gil_scoped_release release;
         h.field.hold(begin, end);
       },
-      py::arg("begin"), py::arg("end"), doc("VectorField::hold"));
-  c.def("set_times", &set_times, py::arg("times"), py::arg("complex"), py::arg("threads") = Threads{},
-        doc("VectorField::set_times"));
-  c.def("update_after_edit", &update_after_edit, py::arg("edit"), py::arg("complex"),
-        doc("VectorField::update_after_edit"));
-  c.def("at", &value_at, py::arg("complex"), py::arg("simplex"), py::arg("w"), py::arg("now"), py::arg("moment") = 0,
-        doc("VectorField::at"));
+      about("VectorField::hold"));
+  c.def("set_times", &set_times, about("VectorField::set_times"));
+  c.def("update_after_edit", &update_after_edit, about("VectorField::update_after_edit"));
+  c.def("at", &value_at, about("VectorField::at"));
   m.attr("VelocityField") = m.attr("VectorField");
 }
 

@@ -46,6 +46,10 @@ void refuse_array(const py::object& x, const char* name, const char* expected, c
                        remedy);
 }
 
+bool is_array(const py::object& x, int dimensions) {
+  return py::isinstance<py::array>(x) && py::reinterpret_borrow<py::array>(x).ndim() == dimensions;
+}
+
 std::span<const Vec3> vectors(const py::object& x, const char* name) {
   if (!is_vectors(x)) refuse_array(x, name, "float64 (n, 3), C-contiguous", convert_vectors);
   const auto a = py::reinterpret_borrow<py::array>(x);
@@ -115,11 +119,6 @@ py::array_t<double> array_of(const Vec3& v) {
   py::array_t<double> made(3);
   std::memcpy(made.mutable_data(), &v, sizeof v);
   return made;
-}
-
-py::array read_only(py::array a) {
-  py::detail::array_proxy(a.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
-  return a;
 }
 
 }  // namespace dartcast::python

@@ -8,11 +8,9 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -37,6 +35,8 @@ std::vector<std::uint32_t> indices(const pybind11::object& x, const char* name);
 /// One vector: any three numbers.
 Vec3 vector(const pybind11::object& x, const char* name);
 
+/// Whether it is an array with this number of dimensions.
+bool is_array(const pybind11::object& x, int dimensions);
 /// Throws TypeError: what was expected, what came.
 [[noreturn]] void refuse_array(const pybind11::object& x, const char* name, const char* expected, const char* remedy);
 
@@ -60,7 +60,11 @@ pybind11::array_t<T> array_of(std::span<const T> values) {
   return pybind11::array_t<T>(static_cast<pybind11::ssize_t>(values.size()), values.data());
 }
 /// The array, made read-only: for attributes.
-pybind11::array read_only(pybind11::array a);
+template <class Array>
+Array read_only(Array a) {
+  pybind11::detail::array_proxy(a.ptr())->flags &= ~pybind11::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return a;
+}
 
 }  // namespace dartcast::python
 
@@ -91,7 +95,7 @@ struct type_caster<std::vector<dartcast::Vec3>> {
 };
 template <>
 struct type_caster<std::span<const dartcast::Vec3>> {
-  static constexpr auto name = const_name("numpy.ndarray");
+  static constexpr auto name = const_name("float64 (n, 3)");
   static handle cast(std::span<const dartcast::Vec3> v, return_value_policy /*policy*/, handle /*parent*/) {
     return dartcast::python::array_of(v).release();
   }
@@ -100,7 +104,7 @@ struct type_caster<std::span<const dartcast::Vec3>> {
 /// Numbers: any one-dimensional array or list that converts without loss in, a fresh array out.
 template <class T>
 struct number_list_caster {
-  PYBIND11_TYPE_CASTER(std::vector<T>, const_name("numbers (n,)"));
+  PYBIND11_TYPE_CASTER(std::vector<T>, const_name("numbers (n,)[") + npy_format_descriptor<T>::name + const_name("]"));
   bool load(handle from, bool convert) {
     if (isinstance<str>(from) || (!isinstance<array>(from) && !PySequence_Check(from.ptr()))) return false;
     if constexpr (std::is_integral_v<T>) {

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <utility>
 
 #include "dartcast/map_edits.hpp"
 #include "support/handles.hpp"
@@ -32,6 +33,18 @@ struct TransactionHandle {
   [[nodiscard]] bool is_of_edit() const { return edit != nullptr || of_surface != nullptr; }
   /// As EditHandle::end().
   void end();
+  /// Calls f(transaction) while it is in use, without Python's lock.
+  template <class F>
+  auto change(const F& f) const {
+    const Use held(*usage, "the transaction");
+    Transaction& transaction = open();
+    const pybind11::gil_scoped_release release;
+    return f(transaction);
+  }
+  template <class F>
+  auto call(const F& f) const {
+    return change([&](Transaction& t) { return f(std::as_const(t)); });
+  }
 };
 
 /// A number that names a savepoint (Savepoints::add).
@@ -39,21 +52,9 @@ struct SavepointHandle {
   std::uint64_t number = 0;
 };
 
-/// Calls f(transaction) while it is in use, without Python's lock.
-template <class Function>
-auto change(const TransactionHandle& handle, const Function& f) {
-  const Use use(*handle.usage, "the transaction");
-  Transaction& transaction = handle.open();
-  const pybind11::gil_scoped_release release;
-  return f(transaction);
-}
-/// Calls f(edit) while it is in use, without Python's lock.
-template <class Function>
-auto change(const EditHandle& handle, const Function& f) {
-  const Use use(*handle.usage, "the edit");
-  ComplexEdit& edit = handle.open();
-  const pybind11::gil_scoped_release release;
-  return f(edit);
+template <class Handle, class Function>
+auto change(const Handle& handle, const Function& f) {
+  return handle.change(f);
 }
 
 /// The function for an edit of an environment or a simulation: make(edit) is called with Python's lock. The edit ends

@@ -1,7 +1,6 @@
 // Enumerations as classes of Python. They live as long as the process, as the module itself does.
 #include "support/enums.hpp"
 
-#include <algorithm>
 #include <cctype>
 #include <map>
 
@@ -20,7 +19,7 @@ std::map<std::string, py::handle>& enum_classes() {
 }  // namespace
 
 void make_enum(py::module_& m, const char* name, const py::dict& members) {
-  py::object made = py::module_::import("enum").attr("IntEnum")(name, members, py::arg("module") = "dartcast");
+  py::object made = py::module_::import("enum").attr("IntEnum")(name, members, py::arg("module") = m.attr("__name__"));
   made.attr("__doc__") = doc(name);
   m.attr(name) = made;
   enum_classes()[name] = made.release();

@@ -1,6 +1,6 @@
 // Enumerations as Python's own enum.IntEnum: members are numbers, have names, and compare with the values in arrays.
 //
-// DARTCAST_ENUM(Kind) in this file gives a type its conversion; bind_enum() in the file of its header makes the class.
+// tools/make_bindings.py lists them: DARTCAST_ENUM(Kind) gives a type its conversion, and bind_enum() makes its class.
 // A caller may also give the name as a text, in either case: "reflect".
 #pragma once
 
@@ -8,7 +8,6 @@
 
 #include <cstdint>
 #include <initializer_list>
-#include <string>
 #include <utility>
 
 #include "dartcast/dartcast.hpp"
@@ -39,33 +38,7 @@ namespace pybind11::detail {
       return dartcast::python::cast_enum(#Type, static_cast<std::int64_t>(e));            \
     }                                                                                     \
   };
-DARTCAST_ENUM(BodySamples)
-DARTCAST_ENUM(Carving)
-DARTCAST_ENUM(CellType)
-DARTCAST_ENUM(Compression)
-DARTCAST_ENUM(DeformationKind)
-DARTCAST_ENUM(EventKind)
-DARTCAST_ENUM(FieldFrame)
-DARTCAST_ENUM(FieldPlace)
-DARTCAST_ENUM(Integrator)
-DARTCAST_ENUM(WallMotion)
-DARTCAST_ENUM(Interpolation)
-DARTCAST_ENUM(Mesher)
-DARTCAST_ENUM(InversionKind)
-DARTCAST_ENUM(Kind)
-DARTCAST_ENUM(Mending)
-DARTCAST_ENUM(OrphanPolicy)
-DARTCAST_ENUM(Partition)
-DARTCAST_ENUM(ParticleStatus)
-DARTCAST_ENUM(Place)
-DARTCAST_ENUM(Reconnection)
-DARTCAST_ENUM(Sign)
-DARTCAST_ENUM(SolidContactKind)
-DARTCAST_ENUM(SolidRefusal)
-DARTCAST_ENUM(SurfaceEnd)
-DARTCAST_ENUM(TrajectoryMark)
-DARTCAST_ENUM(Verdict)
-DARTCAST_ENUM(WallResponseKind)
+#include "enums.inl"
 #undef DARTCAST_ENUM
 
 }  // namespace pybind11::detail

@@ -25,6 +25,10 @@ struct UseBoth {
 /// overwritten.
 void expect_positions_before(const EnvironmentHandle& e, const ParticlesHandle& p, const char* call);
 
+/// Parameters of a call that answers contacts.
+#define DARTCAST_RESPOND_PARAMETERS                                                                       \
+  const RespondArgument &respond, const VelocitiesArgument &velocities, const StatusesArgument &statuses, \
+      const TimeArgument &dt, const AccelerationArgument &acceleration, bool per_contact, const StepOptions &options
 /// The answers' arguments of a call, by name, for the last arguments of its definition.
 #define DARTCAST_RESPOND_ARGUMENTS                                                                                  \
   pybind11::arg("respond") = pybind11::none(), pybind11::kw_only(), pybind11::arg("velocities") = pybind11::none(), \

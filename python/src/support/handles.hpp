@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <utility>
 
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/complex_edit.hpp"
@@ -29,6 +30,12 @@ struct EnvironmentHandle {
       throw InvalidArgument(std::string(call) + ": a next_points() block of this environment is open: leave it first");
   }
 
+  /// Calls f(environment) while it is in use.
+  template <class F>
+  auto call(const F& f) const {
+    const Use use(*usage, "the environment");
+    return f(std::as_const(*environment));
+  }
   /// To change it. Throws InvalidArgument where it is borrowed: `remedy` says what to call instead.
   Environment& changeable(const char* remedy) const {
     if (borrowed) throw InvalidArgument(std::string("this environment belongs to a simulation: ") + remedy);
@@ -40,6 +47,19 @@ struct EnvironmentHandle {
 struct ParticlesHandle {
   Particles particles;
   std::shared_ptr<Usage> usage = std::make_shared<Usage>();
+
+  /// Calls f(particles) while the set is in use; to change it, without Python's lock.
+  template <class F>
+  auto call(const F& f) const {
+    const Use use(*usage, "the set of particles");
+    return f(particles);
+  }
+  template <class F>
+  auto change(const F& f) {
+    const Use use(*usage, "the set of particles");
+    const pybind11::gil_scoped_release release;
+    return f(particles);
+  }
 };
 
 /// A complex of its own, or that of an environment, which only the environment may change.
@@ -48,6 +68,13 @@ struct ComplexHandle {
   const CellComplex* complex = nullptr;
   CellComplex* changeable = nullptr;  ///< null: it belongs to an environment
   std::shared_ptr<Usage> usage = std::make_shared<Usage>();
+
+  /// Calls f(complex) while the complex is in use.
+  template <class F>
+  auto call(const F& f) const {
+    const Use use(*usage, "the complex (an edit of it may be open)");
+    return f(*complex);
+  }
 };
 
 /// A map of its own, or that of a complex, a surface or an open edit.
@@ -59,6 +86,12 @@ struct MapHandle {
   std::function<const CombinatorialMap&()> of_edit = {};  ///< the map of an edit: throws where that has ended
 
   [[nodiscard]] const CombinatorialMap& read() const { return of_edit ? of_edit() : *map; }
+  /// Calls f(map) while the map is in use.
+  template <class F>
+  auto call(const F& f) const {
+    const Use use(*usage, "the map");
+    return f(read());
+  }
 };
 
 /// Points of an edit to which it can be rolled back: none beyond one that was returned to, and none before a commit.
@@ -95,6 +128,14 @@ struct EditHandle {
       throw InvalidArgument(
           "this edit has ended: use it in its `with` block, or in the function given to edit(), only");
     return *edit;
+  }
+  /// Calls f(edit) while it is in use, without Python's lock.
+  template <class F>
+  auto change(const F& f) const {
+    const Use use(*usage, "the edit");
+    ComplexEdit& own_edit = open();
+    const pybind11::gil_scoped_release release;
+    return f(own_edit);
   }
   /// Throws InUse while another thread's call uses the edit. Undoes it where it is Python's own and not committed.
   void end() {

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "dartcast/combinatorial_map.hpp"
 #include "dartcast/ids.hpp"
@@ -21,6 +22,12 @@ pybind11::handle tuple_type(const char* name);
 /// object is no integer.
 bool load_integer(pybind11::handle from, std::uint64_t largest, std::uint64_t& value);
 
+/// An id that may be none.
+template <class T>
+std::optional<T> or_none(const T& id) {
+  return id.valid() ? std::optional<T>(id) : std::nullopt;
+}
+
 /// Two integers of a tuple, or of a row of a structured array; false where it is none of two.
 bool load_pair(pybind11::handle from, std::array<std::uint64_t, 2>& values);
 
@@ -30,7 +37,7 @@ namespace pybind11::detail {
 
 template <class Id>
 struct id_caster {
-  PYBIND11_TYPE_CASTER(Id, const_name("int"));
+  PYBIND11_TYPE_CASTER(Id, (const_name<std::is_same_v<Id, dartcast::Cell>>("Cell", "Vertex")));
   bool load(handle from, bool /*convert*/) {
     if (from.is_none()) {
       value = Id{};
@@ -75,7 +82,7 @@ struct type_caster<std::vector<dartcast::Cell>> : id_list_caster<dartcast::Cell>
 
 template <>
 struct type_caster<dartcast::Patch> {
-  PYBIND11_TYPE_CASTER(dartcast::Patch, const_name("int"));
+  PYBIND11_TYPE_CASTER(dartcast::Patch, const_name("Patch"));
   bool load(handle from, bool /*convert*/) {
     std::uint64_t number = 0;
     if (!dartcast::python::load_integer(from, 0xffffU, number)) return false;

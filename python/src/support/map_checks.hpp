@@ -4,8 +4,6 @@
 
 #include <pybind11/pybind11.h>
 
-#include <string>
-
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/cutting.hpp"
 #include "dartcast/error.hpp"
@@ -27,31 +25,18 @@ void expect_number(std::size_t number, std::size_t end, const char* what);
 /// Where a number is not finite, or the normal is zero.
 void expect_plane(const Plane& plane);
 
-/// Calls f(map) while the map is in use.
-template <class Function>
-auto read(const MapHandle& handle, const Function& f) {
-  const Use use(*handle.usage, "the map");
-  return f(handle.read());
+/// Calls f(object) while what the handle holds is in use.
+template <class Handle, class Function>
+auto read(const Handle& handle, const Function& f) {
+  return handle.call(f);
 }
 /// The same without Python's lock.
-template <class Function>
-auto read_long(const MapHandle& handle, const Function& f) {
-  const Use use(*handle.usage, "the map");
-  const CombinatorialMap& map = handle.read();
-  const pybind11::gil_scoped_release release;
-  return f(map);
-}
-/// Calls f(complex) while the complex is in use, without Python's lock.
-template <class Function>
-auto read_long(const ComplexHandle& handle, const Function& f) {
-  const Use use(*handle.usage, "the complex (an edit of it may be open)");
-  const pybind11::gil_scoped_release release;
-  return f(*handle.complex);
-}
-template <class Function>
-auto read(const ComplexHandle& handle, const Function& f) {
-  const Use use(*handle.usage, "the complex (an edit of it may be open)");
-  return f(*handle.complex);
+template <class Handle, class Function>
+auto read_long(const Handle& handle, const Function& f) {
+  return handle.call([&](const auto& object) {
+    const pybind11::gil_scoped_release release;
+    return f(object);
+  });
 }
 
 /// The map of a complex, to be read.

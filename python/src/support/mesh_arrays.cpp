@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <optional>
 
 #include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
@@ -157,7 +156,7 @@ void add_faces(MeshData& mesh, const py::object& faces, std::int32_t tag, const 
     for (std::size_t f = 1; f <= count; ++f) mesh.patch_offsets.push_back(first + f * corners);
     mesh.patch_tags.insert(mesh.patch_tags.end(), count, tag);
   };
-  if (py::isinstance<py::array>(faces) && py::reinterpret_borrow<py::array>(faces).ndim() == 2) {
+  if (is_array(faces, 2)) {
     return add_rows(
         faces, std::max<std::size_t>(1, static_cast<std::size_t>(py::reinterpret_borrow<py::array>(faces).shape(1))));
   }

@@ -1,7 +1,6 @@
 // Checks of meshes that come from Python, where each array can be set by itself.
 #include "support/meshes.hpp"
 
-#include <algorithm>
 #include <array>
 #include <unordered_map>
 

@@ -3,7 +3,6 @@
 
 #include <pybind11/pybind11.h>
 
-#include <span>
 #include <string>
 
 #include "dartcast/mesh_check.hpp"

@@ -63,6 +63,11 @@ std::byte* record_in(const py::object& self, py::handle record) {
   return static_cast<std::byte*>(caster.value);
 }
 
+// A descriptor: __signature__ of a class. To make all signatures takes time, and few are asked for.
+struct RecordSignature {
+  RecordMembers members;
+};
+
 template <class F, class... Extra>
 void define(py::handle record, const char* name, F&& f, const Extra&... extra) {
   record.attr(name) = py::cpp_function(std::forward<F>(f), py::name(name), py::is_method(record), extra...);
@@ -70,8 +75,10 @@ void define(py::handle record, const char* name, F&& f, const Extra&... extra) {
 
 }  // namespace
 
-void RecordMembers::add(const char* name, const char* cpp_name, std::ptrdiff_t offset, Getter get, Setter set) {
+void RecordMembers::add(const char* name, const char* cpp_name, std::ptrdiff_t offset, Getter get, Setter set,
+                        TypeText type) {
   members_.emplace_back(name);
+  types_.push_back(type);
   const auto getter = [record = record_, offset, get](const py::object& self) {
     return get(record_in(self, record) + offset);
   };
@@ -117,6 +124,27 @@ void RecordMembers::finish(Maker make) const {
            return record(*values_of(self, members));
          });
   record_.attr("__hash__") = py::none();
+  record_.attr("__signature__") = py::cast(RecordSignature{*this});
+}
+
+py::object RecordMembers::signature() const {
+  const py::module_ inspect = py::module_::import("inspect");
+  const py::object parameter = inspect.attr("Parameter");
+  const py::object defaults = record_();
+  py::list parameters;
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    parameters.append(parameter(members_[i], parameter.attr("POSITIONAL_OR_KEYWORD"),
+                                py::arg("default") = defaults.attr(members_[i].c_str()),
+                                py::arg("annotation") = types_[i]()));
+  }
+  return inspect.attr("Signature")(parameters);
+}
+
+void prepare_records(py::module_& m) {
+  py::class_<RecordSignature>(m, "_RecordSignature", "Makes the signature of a record when it is asked for.")
+      .def("__get__", [](const RecordSignature& s, const py::object& /*record*/, const py::object& /*type*/) {
+        return s.members.signature();
+      });
 }
 
 void RecordMembers::set_all(const py::object& self, const py::args& values, const py::kwargs& named) const {

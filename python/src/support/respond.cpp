@@ -2,7 +2,6 @@
 // of the call.
 #include "support/respond.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "support/python.hpp"

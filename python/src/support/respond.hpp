@@ -4,7 +4,6 @@
 #include <pybind11/pybind11.h>
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "dartcast/combinatorial_map.hpp"
 #include "dartcast/contact.hpp"
 #include "dartcast/response.hpp"
+#include "support/typed.hpp"
 
 namespace dartcast::python {
 
@@ -40,6 +40,11 @@ struct LibraryAnswers {
   void expect_particles(std::size_t count) const;
 };
 
+using RespondArgument = Typed<"Respond | None">;
+using VelocitiesArgument = Typed<"Points | None">;
+using StatusesArgument = Typed<"NDArray[uint8] | None">;
+using TimeArgument = Typed<"float | None">;
+using AccelerationArgument = Typed<"Acceleration | None">;
 /// The arguments of a call that answer contacts.
 struct RespondArguments {
   pybind11::object respond, velocities, statuses, dt, acceleration;

@@ -1,4 +1,5 @@
-// Records of C++ as rows of structured arrays: contacts, walls, states, locations. Rows are copies.
+// Records of C++ as rows of structured arrays: contacts, walls, states, locations. Rows are copies. The columns are in
+// tools/make_bindings.py, which writes rows.inl.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -6,108 +7,87 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
-#include "dartcast/contact.hpp"
-#include "dartcast/environment.hpp"
-#include "dartcast/particle_state.hpp"
-#include "dartcast/solids.hpp"
-#include "dartcast/spheres.hpp"
-#include "dartcast/step.hpp"
+#include "dartcast/dartcast.hpp"
+#include "support/arrays.hpp"
+#include "support/docs.hpp"
+#include "support/records.hpp"
 
 namespace dartcast::python {
 
 using Row3 = std::array<double, 3>;
 
-struct ContactRow {
-  std::uint32_t particle;
-  std::uint8_t kind;
-  bool last;
-  std::uint16_t patch;
-  double time_of_impact;
-  Row3 point, normal, wall_displacement, displacement, unused;
-  std::uint32_t first_wall, wall_count, earlier, together, cell;
-  std::uint16_t dart;
+/// A contact, with what its first wall has.
+struct ContactAtWall : Contact {
+  Patch patch;
+  Vec3 normal;
 };
-struct WallRow {
-  std::uint32_t cell;
-  std::uint16_t face, triangle, patch;
-  Row3 normal;
-};
-struct StateRow {
-  Row3 position;
-  std::uint32_t cell;
-  std::uint16_t simplex;
-  std::uint8_t touching_count;
-  bool held;
-  std::array<std::uint32_t, 3> touching_cell;
-  std::array<std::uint16_t, 3> touching_face;
-};
-struct LocationRow {
-  std::uint8_t place, kind;
-  std::uint16_t simplex, dart;
-  std::uint32_t cell, dart_cell;
-};
-struct AddRow {
-  std::uint32_t particle;
-  std::uint8_t place, kind;
-  std::uint16_t simplex, dart;
-  std::uint32_t cell, dart_cell;
-};
-struct RayRow {
-  std::uint8_t origin;
-  bool hit;
-  std::uint8_t kind;
-  std::uint32_t cell;
-  std::uint16_t face, triangle, patch;
-  double distance;
-  Row3 point, normal;
-  std::uint32_t invalid_cell;
-};
-struct HeldRow {
-  std::uint32_t particle, cell;
-};
-struct StoppedRow {
-  std::uint32_t particle;
-  Row3 unused;
-};
-struct OverlapRow {
-  std::uint32_t particle, cell;
-  std::uint16_t face;
-  double depth, left;
-  Row3 point, normal;
-};
-struct SolidContactRow {
-  std::uint32_t solid;
-  std::uint8_t kind, count, wall_kind;
-  std::array<std::uint32_t, 3> vertices;
-  Row3 weights;
-  std::uint32_t cell;
-  std::uint16_t face, triangle, dart, patch;
-  double time_of_impact, gap;
-  Row3 point, wall_point, normal, displacement, wall_displacement;
-};
-struct OrphanRow {
-  std::uint32_t particle;
-  std::uint8_t place, outcome;
-  Row3 position;
-  double distance;
-};
+
+// Entries of rows: numbers, and arrays of them.
+inline Row3 column(const Vec3& v) { return {v.x, v.y, v.z}; }
+inline std::array<Row3, 2> column(const std::array<Vec3, 2>& v) { return {column(v[0]), column(v[1])}; }
+inline std::uint32_t column(Cell c) { return c.value; }
+inline std::uint16_t column(Patch p) { return p.value; }
+template <class T>
+auto column(const T& x) {
+  if constexpr (std::is_enum_v<T>) {
+    return static_cast<std::uint8_t>(x);
+  } else {
+    return x;
+  }
+}
+inline std::array<std::uint32_t, 3> cells_of(const std::array<CellFace, 3>& f) {
+  return {f[0].cell.value, f[1].cell.value, f[2].cell.value};
+}
+inline std::array<std::uint16_t, 3> faces_of(const std::array<CellFace, 3>& f) {
+  return {f[0].face, f[1].face, f[2].face};
+}
+
+#include "rows.inl"
 
 /// Makes the dtypes known. To be called once, first.
 void register_rows();
 
+/// A fresh array with a row for each item.
+template <class Items>
+pybind11::array rows_of(const Items& items) {
+  std::vector<decltype(row_of(*items.begin()))> rows(items.size());  // gaps are zero
+  {
+    const pybind11::gil_scoped_release release;
+    for (std::size_t i = 0; i < rows.size(); ++i) fill(items[i], rows[i]);
+  }
+  return array_of(std::move(rows));
+}
 pybind11::array rows_of(const std::vector<Contact>& contacts, std::span<const WallHit> walls);
-pybind11::array rows_of(std::span<const WallHit> walls);
-pybind11::array rows_of(std::span<const ParticleState> states);
-pybind11::array rows_of(const std::vector<Location>& locations);
-pybind11::array rows_of(const std::vector<AddResult>& added);
-pybind11::array rows_of(const std::vector<RayHit>& hits);
-pybind11::array rows_of(const std::vector<HeldParticle>& held);
-pybind11::array rows_of(const std::vector<StoppedParticle>& stopped);
-pybind11::array rows_of(const std::vector<SphereOverlap>& overlaps);
-pybind11::array rows_of(const std::vector<SolidContact>& contacts);
-pybind11::array rows_of(const std::vector<OrphanedParticle>& orphaned);
+
+/// A struct that Python can only read, under construction.
+template <class T>
+class ReadOnly {
+ public:
+  ReadOnly(const pybind11::module_& m, const char* name) : class_(m, name, doc(name)), name_(name) {}
+
+  template <class M>
+  ReadOnly& member(const char* name, M T::*member) {
+    class_.def_property_readonly(
+        name, [member](const T& t) { return reading(t.*member); }, about(name_ + "::" + name));
+    return *this;
+  }
+  /// A structured array. `text`: its columns.
+  template <class M>
+  ReadOnly& rows(const char* name, M T::*member, const char* text) {
+    class_.def_property_readonly(
+        name, [member](const T& t) { return rows_of(t.*member); }, about(name_ + "::" + name, text));
+    return *this;
+  }
+
+ private:
+  pybind11::class_<T> class_;
+  std::string name_;
+};
 
 /// An array (n,) of this dtype, from one whose fields have the same names and types. Where they stand makes no
 /// difference: numpy.concatenate() packs them. Throws TypeError for another array; `expected` and `remedy`: of its text.
