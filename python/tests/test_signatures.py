@@ -1,11 +1,12 @@
-"""The stubs name the arguments of functions as the module does.
+"""Every function has a signature, and the stubs name the arguments of functions as the module does.
 
-stubtest cannot see signatures of pybind11, and docstrings have none. A call with an argument that no function has is
-refused with a message that lists them.
+stubtest cannot see signatures of pybind11. A call with an argument that no function has is refused with a message that
+lists them.
 """
 from __future__ import annotations
 
 import ast
+import inspect
 import pathlib
 import re
 from collections.abc import Iterator
@@ -98,3 +99,34 @@ def test_arguments_have_the_names_of_the_module() -> None:
         if module != of_stub(nodes):
             wrong.append(f"{name}: the module has {module}, the stub {of_stub(nodes)}")
     assert len(overloads) > 600 and not wrong, "\n".join(wrong)
+
+
+def callables(scope: object, above: str = "") -> Iterator[tuple[str, object]]:
+    """All functions of the module, and methods of its classes."""
+    for name, value in vars(scope).items():
+        if isinstance(value, type) and value.__module__ == "dartcast._core" and not name.startswith("_"):
+            yield from callables(value, f"{above}{name}.")
+        elif callable(getattr(scope, name)) and not isinstance(value, type) and not name.startswith("_"):
+            yield above + name, getattr(scope, name)
+
+
+def test_every_function_has_a_signature() -> None:
+    found = dict(callables(dartcast._core))
+    wrong = []
+    for name, function in found.items():
+        inspect.signature(function)
+        first = (function.__doc__ or "").partition("\n")[0]
+        if not re.match(rf"{name.rsplit('.', 1)[-1]}\(.*\) -> ", first) or "::" in first:
+            wrong.append(f"{name}: {first}")
+    assert len(found) > 350 and not wrong, "\n".join(wrong)
+
+
+def test_signatures_show_names_types_and_defaults() -> None:
+    assert str(inspect.signature(dartcast.Environment.update_after_edit)) == \
+        "(self, particles, orphaned=<OrphanPolicy.RELOCATE: 1>)"
+    assert dartcast.Environment.update_after_edit.__doc__.startswith(
+        "update_after_edit(self, particles: Particles, orphaned: OrphanPolicy = OrphanPolicy.RELOCATE) -> UpdateReport\n")
+    assert str(inspect.signature(dartcast.Environment)).startswith("(mesh, threads=0")
+    assert str(inspect.signature(dartcast.StepOptions)) == \
+        "(max_contacts: 'int' = 16, tolerance: 'float' = 0.05, max_parts: 'int' = 256)"
+    assert inspect.signature(dartcast.BoxOptions).parameters["cells"].default == [1, 1, 1]
