@@ -174,7 +174,7 @@ def draw_cut(figure: Any) -> None:
         environment.add(particles, np.array([[1.5, 1.5, 0.0]]))
         if opens:
             edge = middle_edge(environment)
-            environment.edit(lambda edit: dc.unsew(edit.topology, edge))
+            environment.edit(lambda edit: dc.topology.unsew(edit.topology, edge))
             environment.update_after_edit(particles)
         report = environment.advance(particles, np.array([[4.6, 1.7, 0.0]]))
         fill_cells(axis, environment)

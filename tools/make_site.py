@@ -206,7 +206,7 @@ class PythonPages:
         rows = "\n".join(f"| [{name}]({name}.md) | {title} |" for name, title in names)
         toc = "\n".join(name for name, _ in names)
         (folder / "index.md").write_text(
-            "# Python\n\nAll names are in the module `dartcast`. The parts are those of the C++ headers. "
+            "# Python\n\nThe names are in the module `dartcast`, or in `dartcast.topology`, `.predicates`, `.formats` or `.records`. The parts are those of the C++ headers. "
             "[A tour](../python.md) shows how they are used.\n\n| part | subject |\n|---|---|\n"
             f"{rows}\n\n```{{toctree}}\n:hidden:\n\n{toc}\n```\n", encoding="utf-8")
 

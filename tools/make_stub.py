@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""Writes the stub of the extension module, python/dartcast/_core.pyi, from the signatures of the module itself.
+"""Writes the stub of the extension module, and the modules that give its names to users, from the module itself.
 
-PYTHONPATH=build/release/python python3 tools/make_stub.py > python/dartcast/_core.pyi
+PYTHONPATH=build/release/python python3 tools/make_stub.py python/dartcast
+
+The names that __init__.py takes stay there. All others are in the modules of MODULES, by the header that has them.
 
 Types in signatures are those of results. An argument may be more: a list instead of an array, a text instead of a member
 of an enumeration. There is one section for each public header, by which the site divides its pages.
@@ -13,6 +15,7 @@ import inspect
 import pathlib
 import re
 import sys
+import textwrap
 from collections.abc import Iterator
 
 import dartcast._core as core
@@ -58,6 +61,15 @@ _Single = Callable[[Contact, list[WallHit], list[WallHit]], Union[Vector, AfterC
 _Respond = Union[_Responses, ContactCallback, _Round, _Single]
 _SurfaceRespond = Callable[[SurfaceContact], Union[AfterSurfaceContact, Vector, None]]
 '''
+#: The modules with what no simple program needs, and their headers.
+MODULES = {
+    "predicates": ("Exact signs of determinants, and the bounds of numbers.", "contact dynamics predicates validity"),
+    "topology": ("Maps and complexes, and their edits.", "cell_complex cell_shape combinatorial_map complex_edit cutting "
+                 "map_edits particle_state remeshing surface"),
+    "formats": ("Files of meshes, scenes and runs, and the scenes in them.", "decompose generators mesh_check mesh_data "
+                "mesh_files mesh_part mesh_selection plan report run scene scene_file statistics_files trajectory"),
+    "records": ("Options of options, and results of calls.", ""),
+}
 NUMBERS = ("Cell", "Vertex", "Patch")
 PAIRS = ("Dart", "CellFace", "SimplexId", "CellHandle")
 #: What an argument may be, and what a result is.
@@ -256,19 +268,43 @@ class Stub:
         kind = {tuple: "tuple[str, ...]", numpy.dtype: "numpy.dtype[numpy.void]"}
         return [f"{name}: {next((k for t, k in kind.items() if isinstance(value, t)), type(value).__name__)}"]
 
-    def text(self) -> str:
-        sections: dict[str, list[str]] = {}
+    def sections(self) -> Iterator[tuple[str, str, object]]:
+        """All names of the module, each with its header. What Python alone has belongs to what comes before it."""
         header = "error.hpp"
         for name, value in vars(core).items():
             if not name.startswith("_"):
                 header = self.headers.get(name, header)
-                sections.setdefault(header, []).extend(self.top(name, value))
+                yield header, name, value
+
+    def text(self) -> str:
+        sections: dict[str, list[str]] = {}
+        for header, name, value in self.sections():
+            sections.setdefault(header, []).extend(self.top(name, value))
         text = HEAD + "".join(f"\n# --- {header}\n" + "\n".join(lines) + f"\n# --- end of {header}\n"
                               for header, lines in sorted(sections.items()))
-        text = re.sub(r"\bNDArray\[(\w+)\]", lambda m: f"numpy.typing.NDArray[numpy.{m[1].replace('bool', 'bool_')}]"
-                      if m[1] in ("bool", "float64") or re.fullmatch(r"u?int\d+", m[1]) else m[0], text)
-        return text
+        return re.sub(r"\bNDArray\[(bool|float64|u?int\d+)\]",
+                      lambda m: f"numpy.typing.NDArray[numpy.{m[1].replace('bool', 'bool_')}]", text)
+
+    def modules(self, folder: pathlib.Path) -> dict[str, str]:
+        """The modules of Python, by their names."""
+        kept = re.findall(r"(\w+) as \1", (folder / "__init__.py").read_text(encoding="utf-8"))
+        names: dict[str, list[str]] = {module: [] for module in MODULES}
+        for header, name, _ in self.sections():
+            if name not in kept:
+                names[next((m for m, (_, headers) in MODULES.items() if header[:-4] in headers.split()), "records")].append(name)
+        return {module: f'"""{MODULES[module][0]} Written by tools/make_stub.py."""\nfrom ._core import (\n' +
+                textwrap.fill(", ".join(f"{name}@as@{name}" for name in sorted(found)), 118, initial_indent="    ",
+                              subsequent_indent="    ").replace("@", " ") + ")\n" for module, found in names.items()}
+
+
+def main() -> int:
+    folder = pathlib.Path(sys.argv[1])
+    stub = Stub()
+    (folder / "_core.pyi").write_text(stub.text(), encoding="utf-8")
+    for module, text in stub.modules(folder).items():
+        (folder / f"{module}.py").write_text(text, encoding="utf-8")
+    return 0
 
 
 if __name__ == "__main__":
-    sys.stdout.write(Stub().text())
+    sys.exit(main())

@@ -89,16 +89,16 @@ class Calls:
         if self.environment.map.cell_count() > MAX_CELLS:
             self.make()
         cell = int(self.random.choice(self.environment.map.cells()))
-        plane = dc.plane_through(self.random.uniform(0.5, 3.5, 3), self.random.normal(size=3))
+        plane = dc.topology.plane_through(self.random.uniform(0.5, 3.5, 3), self.random.normal(size=3))
         kind = self.random.integers(4)
 
-        def make(edit: dc.ComplexEdit) -> None:
+        def make(edit: dc.topology.ComplexEdit) -> None:
             if kind == 0:
                 edit.topology.set_free(cell, not edit.map.is_free(cell))
             elif kind == 1:
-                dc.split_by_plane(edit, [cell], plane)
+                dc.topology.split_by_plane(edit, [cell], plane)
             elif kind == 2:
-                dc.subdivide(edit, cell)
+                dc.topology.subdivide(edit, cell)
             else:
                 raise KeyError("out of the edit")
 

@@ -24,20 +24,20 @@ def wrong(state: object, call: Callable[[], object]) -> None:
         raise AssertionError("a wrong call was not refused")
 
 
-def change(random: np.random.Generator) -> Callable[[dc.ComplexEdit], object]:
+def change(random: np.random.Generator) -> Callable[[dc.topology.ComplexEdit], object]:
     """A random edit of one cell of space."""
     kind, point, normal = random.integers(4), random.uniform(0.2, 0.8, 3), random.normal(size=3)
 
-    def make(edit: dc.ComplexEdit) -> None:
+    def make(edit: dc.topology.ComplexEdit) -> None:
         cell = int(random.choice(edit.map.cells()))
         if kind == 0:
             edit.topology.set_free(cell, not edit.map.is_free(cell))
         elif kind == 1:
-            dc.subdivide(edit, cell)
+            dc.topology.subdivide(edit, cell)
         elif kind == 2:
-            dc.split_by_plane(edit, [cell], dc.plane_through(point, normal))
+            dc.topology.split_by_plane(edit, [cell], dc.topology.plane_through(point, normal))
         else:
-            dc.remove(edit.topology, cell)
+            dc.topology.remove(edit.topology, cell)
             raise KeyError("out of the edit")
     return make
 
@@ -60,7 +60,7 @@ class SurfaceCalls:
     def answer(self) -> object:
         restitution = self.random.uniform()
         return [None, lambda c: dc.slid(c, c.unused), lambda c: dc.reflected(c, c.unused, restitution),
-                lambda c: dc.AfterSurfaceContact(dc.slid(c, c.unused), True)][self.random.integers(4)]
+                lambda c: dc.topology.AfterSurfaceContact(dc.slid(c, c.unused), True)][self.random.integers(4)]
 
     def advance(self) -> None:
         ways = self.random.normal(0.0, 0.2, (len(self.places), 3))
@@ -71,8 +71,8 @@ class SurfaceCalls:
         i = self.random.integers(len(self.places))
         row = self.places[i]
         place = dc.SurfacePlace((int(row["cell"]), int(row["simplex"])), list(row["weights"]))
-        dc.step(self.surface, place, self.random.normal(0.0, 0.2, 3), self.answer(), trace=dc.SurfaceTrace())
-        self.places[i] = dc.surface_places([place])[0]
+        dc.step(self.surface, place, self.random.normal(0.0, 0.2, 3), self.answer(), trace=dc.topology.SurfaceTrace())
+        self.places[i] = dc.topology.surface_places([place])[0]
 
     def move(self) -> None:
         moved = self.surface.positions.copy()
@@ -87,7 +87,7 @@ class SurfaceCalls:
         try:
             with dc.SurfaceEdit(self.surface) as edit:
                 cell, dart = int(self.random.choice(edit.map.cells())), int(self.random.integers(5))
-                change_edge = [dc.split_edge, dc.merge_edges, dc.merge_faces][self.random.integers(3)]
+                change_edge = [dc.topology.split_edge, dc.topology.merge_edges, dc.topology.merge_faces][self.random.integers(3)]
                 change_edge(edit.topology, (cell, dart))
                 if self.random.uniform() < 0.2:
                     raise KeyError("out of the edit")
@@ -95,7 +95,7 @@ class SurfaceCalls:
         except (dc.Error, IndexError, KeyError):
             self.refused += 1
             return
-        followed = dc.followed(self.surface, report, self.places)
+        followed = dc.topology.followed(self.surface, report, self.places)
         self.places = followed[followed["cell"] != dc.NONE].copy()
         if len(self.places) < 5:
             self.make()
@@ -116,7 +116,7 @@ class SurfaceCalls:
         wrong(self, bad[self.random.integers(len(bad))])
 
     def check(self) -> None:
-        assert self.surface.contains(self.places).all() and dc.check_integrity(self.surface.map) == []
+        assert self.surface.contains(self.places).all() and dc.topology.check_integrity(self.surface.map) == []
 
 
 class BodyCalls:
@@ -130,7 +130,7 @@ class BodyCalls:
 
     def make(self) -> None:
         self.environment = dc.Environment(dc.generate_box(cells=[3, 3, 3], jitter=0.1), threads=2)
-        options = dc.BodiesOptions(dt=1e-2, gravity=[0.0, 0.0, -9.81], collisions=dc.BodyCollisionOptions())
+        options = dc.BodiesOptions(dt=1e-2, gravity=[0.0, 0.0, -9.81], collisions=dc.records.BodyCollisionOptions())
         self.bodies = dc.Bodies(self.environment, options, {"zmin": dc.Slide()})
         self.saved = self.bodies.checkpoint()
 
@@ -221,7 +221,7 @@ class CatheterCalls:
         points = self.catheter.points()
         assert len(self.catheter.frames()) in (len(points), len(points) - 1, 0)
         if len(points) > 2:
-            dc.camera_path(self.environment, points, dc.CameraOptions(spacing=0.2))
+            dc.camera_path(self.environment, points, dc.records.CameraOptions(spacing=0.2))
         self.check()
 
     def refuse(self) -> None:
@@ -286,14 +286,14 @@ class SimulationCalls:
     def event(self) -> None:
         if self.simulation.environment.map.cell_count() > MAX_CELLS:
             self.make()
-        plane = dc.plane_through(self.random.uniform(0.3, 0.7, 3), self.random.normal(size=3))
+        plane = dc.topology.plane_through(self.random.uniform(0.3, 0.7, 3), self.random.normal(size=3))
         low = self.random.uniform(0.1, 0.5, 3)
-        what = [dc.Cut(plane, 0.02), dc.Carve(dc.box_tool(low, low + 0.3), "open", bool(self.random.integers(2))),
-                dc.Ligature(plane, list(low), dc.TyingOptions(0.1, 0.5), 0.05)][self.random.integers(3)]
+        what = [dc.Cut(plane, 0.02), dc.Carve(dc.topology.box_tool(low, low + 0.3), "open", bool(self.random.integers(2))),
+                dc.Ligature(plane, list(low), dc.topology.TyingOptions(0.1, 0.5), 0.05)][self.random.integers(3)]
         event = dc.Event(self.simulation.time, what, POLICIES[self.random.integers(len(POLICIES))])
         try:
             if self.random.integers(2):
-                dc.apply(self.simulation, event)
+                dc.records.apply(self.simulation, event)
             else:
                 self.simulation.set_events([event])
                 self.simulation.step()

@@ -29,20 +29,20 @@ def test_an_audit_finds_particles_that_are_not_where_they_say():
 def test_equal_sets_have_equal_hashes_in_any_order():
     env, parts = scene()
     v = np.zeros((100, 3))
-    a, b = dartcast.StateHash(), dartcast.StateHash()
+    a, b = dartcast.records.StateHash(), dartcast.records.StateHash()
     a.add(np.arange(100), parts, v)
     order = np.random.default_rng(1).permutation(100)
     for i in order:
         b.add(int(i), parts[int(i)], v[i])
-    assert a == b and a.hex() == b.hex() and len(a.hex()) == 32 and a != dartcast.StateHash()
-    assert dartcast.StateHash(a.words) == a and copy.copy(a) == a and a.hex() in repr(a)
-    total = dartcast.StateHash()
+    assert a == b and a.hex() == b.hex() and len(a.hex()) == 32 and a != dartcast.records.StateHash()
+    assert dartcast.records.StateHash(a.words) == a and copy.copy(a) == a and a.hex() in repr(a)
+    total = dartcast.records.StateHash()
     total += a
     assert total == a
     b.add(7, parts[7], v[7], fate=1)
     assert a != b and (a == 5) is False
     v[3, 1] = -0.0
-    c = dartcast.StateHash()
+    c = dartcast.records.StateHash()
     c.add(np.arange(100), parts, v)
     assert c != a
     with pytest.raises(dartcast.InvalidArgument):

@@ -11,7 +11,7 @@ CellFace, Dart = dartcast.CellFace, dartcast.Dart
 
 
 def box_map(**options):
-    return dartcast.CombinatorialMap(dartcast.generate_box(cells=[2, 2, 2], **options))
+    return dartcast.topology.CombinatorialMap(dartcast.generate_box(cells=[2, 2, 2], **options))
 
 
 def all_darts(m):
@@ -29,7 +29,7 @@ def test_the_constraints_of_a_map_hold(options):
         assert (other is None) == (m.opposite(m.face(d)) is None)
         if other is not None:
             assert m.phi3(other) == d and m.origin(m.phi1(other)) == m.origin(d)
-    assert dartcast.check_integrity(m) == []
+    assert dartcast.topology.check_integrity(m) == []
 
 
 def test_sizes():
@@ -152,22 +152,22 @@ def test_maps_are_equal_until_one_changes():
 def test_the_mesh_is_checked_and_repaired_but_unchanged():
     points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
     mesh = dartcast.MeshData(points, {"tetra": [[0, 2, 1, 3]]})
-    assert dartcast.CombinatorialMap(mesh).cell_count() == 1
+    assert dartcast.topology.CombinatorialMap(mesh).cell_count() == 1
     assert mesh.connectivity.tolist() == [0, 2, 1, 3]
     with pytest.raises(dartcast.InvalidMesh, match="without volume"):
-        dartcast.CombinatorialMap(dartcast.MeshData(points * [1, 1, 0], {"tetra": [[0, 1, 2, 3]]}))
+        dartcast.topology.CombinatorialMap(dartcast.MeshData(points * [1, 1, 0], {"tetra": [[0, 1, 2, 3]]}))
 
 
 def test_the_map_of_a_complex_is_only_read():
-    m = dartcast.CellComplex(dartcast.generate_box()).map
+    m = dartcast.topology.CellComplex(dartcast.generate_box()).map
     with pytest.raises(dartcast.InvalidArgument, match="belongs to"):
         m.set_free(int(m.cells()[0]), False)
     with pytest.raises(dartcast.InvalidArgument, match="belongs to"):
-        dartcast.Transaction(m)
+        dartcast.topology.Transaction(m)
 
 
 def test_planar_maps():
-    m = dartcast.CombinatorialMap(dartcast.generate_rectangle(cells=[3, 2], mixed=True))
+    m = dartcast.topology.CombinatorialMap(dartcast.generate_rectangle(cells=[3, 2], mixed=True))
     assert m.dimension == 2
     for d in all_darts(m):
         assert m.phi3(d) is None

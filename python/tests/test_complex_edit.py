@@ -11,8 +11,8 @@ Dart = dartcast.Dart
 
 
 def box(n=2):
-    c = dartcast.CellComplex(dartcast.generate_box(cells=[n, n, n]))
-    dartcast.ComplexEdit(c)  # the first edit of a map counts the cells of each vertex
+    c = dartcast.topology.CellComplex(dartcast.generate_box(cells=[n, n, n]))
+    dartcast.topology.ComplexEdit(c)  # the first edit of a map counts the cells of each vertex
     return c
 
 
@@ -23,20 +23,20 @@ def first(m):
 def test_leaving_without_commit_undoes_the_edit():
     c = box()
     before = copy.copy(c)
-    with dartcast.ComplexEdit(c) as edit:
-        dartcast.split_edge(edit.topology, (first(edit.map), 0))
+    with dartcast.topology.ComplexEdit(c) as edit:
+        dartcast.topology.split_edge(edit.topology, (first(edit.map), 0))
         assert edit.map.vertex_count == 28
     assert c.map == before.map and np.array_equal(c.positions, before.positions)
-    abandoned = dartcast.ComplexEdit(c)
-    dartcast.remove(abandoned.topology, first(abandoned.map))
+    abandoned = dartcast.topology.ComplexEdit(c)
+    dartcast.topology.remove(abandoned.topology, first(abandoned.map))
     del abandoned
     assert c.map == before.map
 
 
 def test_new_vertices_are_placed():
     c = box()
-    with dartcast.ComplexEdit(c) as edit:
-        split = dartcast.split_edge(edit.topology, (first(edit.map), 0))
+    with dartcast.topology.ComplexEdit(c) as edit:
+        split = dartcast.topology.split_edge(edit.topology, (first(edit.map), 0))
         a, b = (edit.topology.created(0).from_, edit.topology.created(0).other)
         ends = edit.position(np.array([a, b]))
         assert np.array_equal(edit.position(split.vertex), ends.mean(axis=0))
@@ -44,41 +44,41 @@ def test_new_vertices_are_placed():
         x = 0.25 * ends[0] + 0.75 * ends[1]
         assert np.allclose(edit.position(split.vertex), x)
         report = edit.commit()
-    assert np.allclose(c.positions[split.vertex], x) and dartcast.check_validity(c).valid
+    assert np.allclose(c.positions[split.vertex], x) and dartcast.predicates.check_validity(c).valid
     assert report.map.created[0].vertex == split.vertex and report.boundary_shift < 1e-12
     placed = report.placed[0]
     assert placed.vertex == split.vertex and placed.of.tolist() == [a, b] and placed.weights.tolist() == [0.25, 0.75]
     for cell in split.cells:
         assert c.map.contains(report.now(int(cell)))
     values = np.arange(27.0)
-    new = dartcast.update_after_edit(report, c.map.vertex_count, values)
+    new = dartcast.topology.update_after_edit(report, c.map.vertex_count, values)
     assert new[split.vertex] == 0.25 * a + 0.75 * b and np.array_equal(new[:27], values)
-    both = dartcast.update_after_edit(report, c.map.vertex_count, np.column_stack([values, -values]))
+    both = dartcast.topology.update_after_edit(report, c.map.vertex_count, np.column_stack([values, -values]))
     assert np.array_equal(both[:len(new)], np.column_stack([new, -new]))
 
 
 def test_data_that_do_not_fit_an_edit_are_refused():
     c = box()
-    with dartcast.ComplexEdit(c) as edit:
-        dartcast.split_edge(edit.topology, (first(edit.map), 0))
+    with dartcast.topology.ComplexEdit(c) as edit:
+        dartcast.topology.split_edge(edit.topology, (first(edit.map), 0))
         report = edit.commit()
     with pytest.raises(TypeError, match="values: expected float64"):
-        dartcast.update_after_edit(report, 28, np.arange(27))
-    report.placed = [dartcast.PlacedVertex(3, [4000000000], [1.0])]
+        dartcast.topology.update_after_edit(report, 28, np.arange(27))
+    report.placed = [dartcast.topology.PlacedVertex(3, [4000000000], [1.0])]
     with pytest.raises(dartcast.InvalidArgument, match="not below 28"):
-        dartcast.update_after_edit(report, 28, np.arange(27.0))
-    report.placed = [dartcast.PlacedVertex(3, [1, 2], [1.0])]
+        dartcast.topology.update_after_edit(report, 28, np.arange(27.0))
+    report.placed = [dartcast.topology.PlacedVertex(3, [1, 2], [1.0])]
     with pytest.raises(dartcast.InvalidArgument):
-        dartcast.update_after_edit(report, 28, np.arange(27.0))
-    report.placed = [dartcast.PlacedVertex(3, [], [])]
+        dartcast.topology.update_after_edit(report, 28, np.arange(27.0))
+    report.placed = [dartcast.topology.PlacedVertex(3, [], [])]
     with pytest.raises(dartcast.InvalidArgument):
-        dartcast.update_after_edit(report, 28, np.arange(27.0))
+        dartcast.topology.update_after_edit(report, 28, np.arange(27.0))
 
 
 def test_places_are_refused():
     c = box()
-    with dartcast.ComplexEdit(c) as edit:
-        v = dartcast.split_edge(edit.topology, (first(edit.map), 0)).vertex
+    with dartcast.topology.ComplexEdit(c) as edit:
+        v = dartcast.topology.split_edge(edit.topology, (first(edit.map), 0)).vertex
         for bad in ([np.nan, 0, 0], [1e100, 0, 0]):
             with pytest.raises(dartcast.InvalidArgument, match="place"):
                 edit.place(v, bad)
@@ -96,9 +96,9 @@ def test_places_are_refused():
 def test_a_commit_that_is_refused_undoes_all():
     c = box()
     before = copy.copy(c)
-    with dartcast.ComplexEdit(c) as edit:
+    with dartcast.topology.ComplexEdit(c) as edit:
         point = edit.savepoint()
-        v = dartcast.split_edge(edit.topology, (first(edit.map), 0)).vertex
+        v = dartcast.topology.split_edge(edit.topology, (first(edit.map), 0)).vertex
         edit.place(v, [5.0, 5.0, 5.0])
         with pytest.raises(dartcast.EditRefused):
             edit.commit()
@@ -109,12 +109,12 @@ def test_a_commit_that_is_refused_undoes_all():
 
 def test_savepoints():
     c = box()
-    with dartcast.ComplexEdit(c) as edit:
+    with dartcast.topology.ComplexEdit(c) as edit:
         cell = first(edit.map)
         start = edit.savepoint()
-        dartcast.split_edge(edit.topology, (cell, 0))
+        dartcast.topology.split_edge(edit.topology, (cell, 0))
         later = edit.topology.savepoint()
-        dartcast.remove(edit.topology, first(edit.map))
+        dartcast.topology.remove(edit.topology, first(edit.map))
         edit.roll_back(later)
         assert edit.map.vertex_count == 28
         edit.roll_back(start)
@@ -125,14 +125,14 @@ def test_savepoints():
 
 def test_the_topology_of_an_edit_is_ended_by_the_edit():
     c = box()
-    with dartcast.ComplexEdit(c) as edit:
+    with dartcast.topology.ComplexEdit(c) as edit:
         t = edit.topology
         for call in (t.commit, t.roll_back, lambda: t.__exit__(None, None, None)):
             with pytest.raises(dartcast.InvalidArgument, match="belongs to an edit"):
                 call()
         with pytest.raises(dartcast.InvalidArgument, match="belongs to"):
-            dartcast.Transaction(edit.map)
-        draft = dartcast.draft_of(edit.map, first(edit.map))
+            dartcast.topology.Transaction(edit.map)
+        draft = dartcast.topology.draft_of(edit.map, first(edit.map))
         draft.point = t.add_vertex(0, 1)
         with pytest.raises(dartcast.InvalidArgument, match="no Steiner point of a cell"):
             t.replace([first(edit.map)], [draft])
@@ -145,12 +145,12 @@ def test_the_topology_of_an_edit_is_ended_by_the_edit():
 
 def test_an_ended_edit_is_refused():
     c = box()
-    with dartcast.ComplexEdit(c) as edit:
+    with dartcast.topology.ComplexEdit(c) as edit:
         t, m = edit.topology, edit.map
     plane = dartcast.Plane()
     for call in (lambda: edit.topology, lambda: edit.position(0), lambda: edit.commit(), lambda: m.cells(),
-                 lambda: t.added(), lambda: dartcast.remove(t, 0), lambda: edit.__enter__(), lambda: edit.savepoint(),
-                 lambda: dartcast.subdivide(edit, 0), lambda: dartcast.split_by_plane(edit, [], plane)):
+                 lambda: t.added(), lambda: dartcast.topology.remove(t, 0), lambda: edit.__enter__(), lambda: edit.savepoint(),
+                 lambda: dartcast.topology.subdivide(edit, 0), lambda: dartcast.topology.split_by_plane(edit, [], plane)):
         with pytest.raises(dartcast.InvalidArgument, match="has ended"):
             call()
 
@@ -158,10 +158,10 @@ def test_an_ended_edit_is_refused():
 def test_a_complex_is_in_use_while_an_edit_is_open():
     c = box()
     m = c.map
-    with dartcast.ComplexEdit(c):
+    with dartcast.topology.ComplexEdit(c):
         for call in (lambda: c.positions, lambda: c.move(np.zeros((27, 3))), lambda: m.cells(),
-                     lambda: dartcast.ComplexEdit(c), lambda: copy.copy(c), lambda: dartcast.check_validity(c),
-                     lambda: dartcast.to_mesh(c)):
+                     lambda: dartcast.topology.ComplexEdit(c), lambda: copy.copy(c), lambda: dartcast.predicates.check_validity(c),
+                     lambda: dartcast.topology.to_mesh(c)):
             with pytest.raises(dartcast.InUse):
                 call()
     assert len(m.cells()) == 8
@@ -169,8 +169,8 @@ def test_a_complex_is_in_use_while_an_edit_is_open():
 
 def test_an_edit_continues_after_a_commit():
     c = box()
-    with dartcast.ComplexEdit(c) as edit:
-        dartcast.remove(edit.topology, first(edit.map))
+    with dartcast.topology.ComplexEdit(c) as edit:
+        dartcast.topology.remove(edit.topology, first(edit.map))
         edit.commit()
-        dartcast.remove(edit.topology, first(edit.map))
+        dartcast.topology.remove(edit.topology, first(edit.map))
     assert c.map.cell_count() == 7

@@ -21,7 +21,7 @@ def test_a_turn_is_a_rotation():
     assert len(d) == d.size == 20 and np.allclose(x, np.c_[-REST[:, 1], REST[:, 0], REST[:, 2]])
     out = np.empty_like(REST)
     assert d.positions(1.0, out) is out and np.array_equal(out, x) and not np.shares_memory(x, d.positions(1.0))
-    assert dartcast.deformation_kind("bend") == dartcast.DeformationKind.BEND and dartcast.deformation_kind("x") is None
+    assert dartcast.records.deformation_kind("bend") == dartcast.DeformationKind.BEND and dartcast.records.deformation_kind("x") is None
 
 
 def test_positions_go_into_an_environment():
@@ -83,12 +83,12 @@ def test_pulls_and_edits_are_added():
     pull[3] = [0, 0, 1.0]
     d.add_pull(pull, 1.0, 2.0)
     assert np.array_equal(d.positions(1.0), REST) and np.allclose(d.positions(2.0) - REST, pull)
-    placed = dartcast.PlacedVertex(20, np.array([0, 1]), [0.5, 0.5], [0, 0, 0])
-    d.update_after_edit(dartcast.ComplexEditReport(placed=[placed]), 21)
+    placed = dartcast.topology.PlacedVertex(20, np.array([0, 1]), [0.5, 0.5], [0, 0, 0])
+    d.update_after_edit(dartcast.topology.ComplexEditReport(placed=[placed]), 21)
     assert len(d) == 21 and np.allclose(d.positions(0.0)[20], REST[:2].mean(axis=0))
-    for report, size in ((dartcast.ComplexEditReport(), 5),
-                         (dartcast.ComplexEditReport(placed=[dartcast.PlacedVertex(21, np.array([99]), [1.0])]), 22),
-                         (dartcast.ComplexEditReport(placed=[dartcast.PlacedVertex(21, np.array([1]), [])]), 22)):
+    for report, size in ((dartcast.topology.ComplexEditReport(), 5),
+                         (dartcast.topology.ComplexEditReport(placed=[dartcast.topology.PlacedVertex(21, np.array([99]), [1.0])]), 22),
+                         (dartcast.topology.ComplexEditReport(placed=[dartcast.topology.PlacedVertex(21, np.array([1]), [])]), 22)):
         with pytest.raises(dartcast.InvalidArgument):
             d.update_after_edit(report, size)
 
@@ -111,4 +111,4 @@ def test_arguments_that_do_not_fit_are_refused():
         d.add_pull(REST, 2.0, 1.0)
     with pytest.raises(dartcast.InvalidArgument):
         dartcast.Deformation([dartcast.DeformationStep(kind="twist", axis=[1.0, 0, 0])], REST * [1, 1, 0]).check_plane()
-    assert dartcast.FRAME_MEMORY > 0 and dartcast.MAX_FRAMES_HELD > 1
+    assert dartcast.records.FRAME_MEMORY > 0 and dartcast.records.MAX_FRAMES_HELD > 1

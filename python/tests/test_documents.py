@@ -45,7 +45,7 @@ def test_scenes_of_a_page_are_scenes(root: pathlib.Path, name: str) -> None:
     scenes = SCENE.findall((root / "docs" / name).read_text(encoding="utf-8"))
     assert scenes
     for text in scenes:
-        dartcast.parse_scene(text, f"docs/{name}")
+        dartcast.formats.parse_scene(text, f"docs/{name}")
 
 
 def test_figures_of_the_concepts_are_drawn(root: pathlib.Path, tmp_path: pathlib.Path) -> None:

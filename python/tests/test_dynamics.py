@@ -10,35 +10,35 @@ import pytest
 
 
 def test_limits_hold():
-    assert dartcast.is_radius(dartcast.LARGEST_RADIUS) and not dartcast.is_radius(-1.0) and not dartcast.is_radius(np.nan)
-    assert dartcast.is_mass(dartcast.SMALLEST_MASS) and dartcast.is_mass(dartcast.LARGEST_MASS)
-    assert not dartcast.is_mass(0.0) and dartcast.SPHERE_TIME_BOUND == 2**-30 and dartcast.TOUCHING_BOUND == 2**-46
-    assert dartcast.max_threads() >= 1 and dartcast.SHARE_TOGETHER == 2**-20 and dartcast.ALONG_SHARE == 4e-12
+    assert dartcast.predicates.is_radius(dartcast.predicates.LARGEST_RADIUS) and not dartcast.predicates.is_radius(-1.0) and not dartcast.predicates.is_radius(np.nan)
+    assert dartcast.predicates.is_mass(dartcast.predicates.SMALLEST_MASS) and dartcast.predicates.is_mass(dartcast.predicates.LARGEST_MASS)
+    assert not dartcast.predicates.is_mass(0.0) and dartcast.predicates.SPHERE_TIME_BOUND == 2**-30 and dartcast.predicates.TOUCHING_BOUND == 2**-46
+    assert dartcast.max_threads() >= 1 and dartcast.predicates.SHARE_TOGETHER == 2**-20 and dartcast.predicates.ALONG_SHARE == 4e-12
 
 
 def test_counts_are_summed():
-    a = dartcast.CollisionCounts(pairs_tested=2, deepest=0.5)
-    a += dartcast.CollisionCounts(pairs_tested=3, deepest=0.25)
+    a = dartcast.predicates.CollisionCounts(pairs_tested=2, deepest=0.5)
+    a += dartcast.predicates.CollisionCounts(pairs_tested=3, deepest=0.25)
     assert a.pairs_tested == 5 and a.deepest == 0.5
-    c = dartcast.Counters(particle_steps=2, contacts=[1, 2, 3])
-    c += dartcast.Counters(particle_steps=1, contacts=[1, 1, 1], orientation=dartcast.TestCounts(4, 1))
+    c = dartcast.records.Counters(particle_steps=2, contacts=[1, 2, 3])
+    c += dartcast.records.Counters(particle_steps=1, contacts=[1, 1, 1], orientation=dartcast.records.TestCounts(4, 1))
     assert c.particle_steps == 3 and list(c.contacts) == [2, 3, 4] and c.orientation.tests == 4
-    assert len(c.histogram) == dartcast.Counters.HISTOGRAM_SIZE
+    assert len(c.histogram) == dartcast.records.Counters.HISTOGRAM_SIZE
 
 
 def test_a_body_turns_about_its_centre():
-    body = dartcast.RigidMover(turns=True, angular_velocity=[0, 0, 2.0], centre=[1.0, 0, 0], velocity=[0, 0, 1.0])
+    body = dartcast.predicates.RigidMover(turns=True, angular_velocity=[0, 0, 2.0], centre=[1.0, 0, 0], velocity=[0, 0, 1.0])
     assert np.allclose(body.velocity_at([2.0, 0, 0]), [0, 2, 1])
-    assert dartcast.Quaternion().w == 1.0 and np.array_equal(dartcast.Mat3().y, [0, 1, 0])
-    assert dartcast.CachedImpulse.WALL == 2**64 - 1
+    assert dartcast.predicates.Quaternion().w == 1.0 and np.array_equal(dartcast.predicates.Mat3().y, [0, 1, 0])
+    assert dartcast.predicates.CachedImpulse.WALL == 2**64 - 1
 
 
 @pytest.mark.parametrize("record", [
-    dartcast.ParticleState([1, 2, 3], 5, 1), dartcast.WallHit((1, 2), 3, 4, [0, 0, 1]), dartcast.Contact(particle=3),
+    dartcast.topology.ParticleState([1, 2, 3], 5, 1), dartcast.WallHit((1, 2), 3, 4, [0, 0, 1]), dartcast.Contact(particle=3),
     dartcast.StepOptions(max_contacts=3), dartcast.Reflect(0.5, friction=0.1), dartcast.Slide(),
-    dartcast.WallResponse("stick"), dartcast.Acceleration([0, 0, -9.81], 0.1), dartcast.AfterContact([1, 0, 0], True),
-    dartcast.Location(), dartcast.Counters(), dartcast.Audit(1, 0, ""), dartcast.Crossing(time=0.5),
-    dartcast.TrajectoryPoint(time=0.5), dartcast.StepResult(held=True), dartcast.RigidMover(),
+    dartcast.WallResponse("stick"), dartcast.records.Acceleration([0, 0, -9.81], 0.1), dartcast.AfterContact([1, 0, 0], True),
+    dartcast.Location(), dartcast.records.Counters(), dartcast.records.Audit(1, 0, ""), dartcast.records.Crossing(time=0.5),
+    dartcast.formats.TrajectoryPoint(time=0.5), dartcast.records.StepResult(held=True), dartcast.predicates.RigidMover(),
 ])
 def test_records_are_copied_compared_and_saved(record):
     assert copy.copy(record) == record and copy.deepcopy(record) == record
@@ -59,18 +59,18 @@ def test_records_with_lists_of_arrays_are_compared(make):
     assert make(1.0) != shorter and shorter != dartcast.BladePath()
 
 
-@pytest.mark.parametrize("cls", [dartcast.BodiesStep, dartcast.SimulationStep, dartcast.SimulationEdit])
+@pytest.mark.parametrize("cls", [dartcast.records.BodiesStep, dartcast.SimulationStep, dartcast.records.SimulationEdit])
 def test_records_with_reports_are_copied(cls):
     assert type(copy.copy(cls())) is cls and type(copy.deepcopy(cls())) is cls
 
 
 def test_members_refuse_other_types():
     for make in (lambda: dartcast.Reflect("much"), lambda: dartcast.StepOptions(max_contacts=-1),
-                 lambda: dartcast.WallResponse("bounce"), lambda: dartcast.Acceleration([1, 2]),
-                 lambda: dartcast.ParticleState(cell="x"), lambda: dartcast.Reflect(1, 2, 3),
+                 lambda: dartcast.WallResponse("bounce"), lambda: dartcast.records.Acceleration([1, 2]),
+                 lambda: dartcast.topology.ParticleState(cell="x"), lambda: dartcast.Reflect(1, 2, 3),
                  lambda: dartcast.Reflect(0.5, restitution=0.5)):
         with pytest.raises((TypeError, ValueError)):
             make()
-    state = dartcast.ParticleState()
+    state = dartcast.topology.ParticleState()
     state.put((3, 2), [1, 2, 3])
     assert state.at() == (3, 2) and np.array_equal(state.position, [1, 2, 3]) and not state.position.flags.writeable

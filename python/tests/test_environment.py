@@ -319,7 +319,7 @@ def test_an_edit_that_raises_changes_nothing():
     before = env.map.cells()
 
     def fails(edit):
-        dartcast.remove(edit.topology, int(edit.map.cells()[0]))
+        dartcast.topology.remove(edit.topology, int(edit.map.cells()[0]))
         raise KeyError("mine")
 
     with pytest.raises(KeyError, match="mine"):
@@ -333,7 +333,7 @@ def test_parts_keep_the_environment_alive():
     del env
     assert len(map_.cells()) == 8 and complex_.point_count == 27
     with pytest.raises(dartcast.InvalidArgument):
-        dartcast.ComplexEdit(complex_)
+        dartcast.topology.ComplexEdit(complex_)
     with pytest.raises(dartcast.InvalidArgument):
         complex_.move(complex_.positions)
 
@@ -347,9 +347,9 @@ def test_threads_are_set():
         env.threads = dartcast.max_threads() + 1
     with pytest.raises(ValueError):
         env.threads = -1
-    dartcast.check_threads(1)
+    dartcast.records.check_threads(1)
     with pytest.raises(dartcast.InvalidArgument):
-        dartcast.check_threads(10**6)
+        dartcast.records.check_threads(10**6)
 
 
 def test_particles_of_another_environment_are_refused():
@@ -366,15 +366,15 @@ def test_placement_and_forecast_name_the_cell_of_the_map():
     parts = centred(env)
     state = parts[0]
     corners = env.complex.corners(state.at())
-    ahead = dartcast.forecast(env.map, state, corners)
+    ahead = dartcast.topology.forecast(env.map, state, corners)
     assert ahead.kind in (dartcast.Kind.VOLUME, dartcast.Kind.FACE, dartcast.Kind.EDGE) and ahead.dart is not None
-    inside = dartcast.placement(env.map, state.at(), corners, corners.mean(axis=0))
+    inside = dartcast.topology.placement(env.map, state.at(), corners, corners.mean(axis=0))
     assert inside.kind in (dartcast.Kind.VOLUME, dartcast.Kind.FACE)
     with pytest.raises(dartcast.InvalidArgument):
-        dartcast.forecast(env.map, dartcast.ParticleState(), corners)
+        dartcast.topology.forecast(env.map, dartcast.topology.ParticleState(), corners)
     with pytest.raises(dartcast.InvalidArgument):
-        dartcast.placement(env.map, (12345, 0), corners, [0, 0, 0])
+        dartcast.topology.placement(env.map, (12345, 0), corners, [0, 0, 0])
     bad = parts[0]
     bad.touching_count = 9
     with pytest.raises(dartcast.InvalidArgument, match="3 walls"):
-        dartcast.forecast(env.map, bad, corners)
+        dartcast.topology.forecast(env.map, bad, corners)

@@ -15,7 +15,7 @@ def test_bases() -> None:
 
 def test_an_invalid_argument_is_a_value_error() -> None:
     with pytest.raises(ValueError, match="frames; give at most"):
-        dartcast.write_report("none", dartcast.ReportOptions(frames=70_000))
+        dartcast.formats.write_report("none", dartcast.formats.ReportOptions(frames=70_000))
 
 
 def test_a_mesh_with_a_flat_cell_is_invalid() -> None:
@@ -26,14 +26,14 @@ def test_a_mesh_with_a_flat_cell_is_invalid() -> None:
 
 def test_a_file_that_is_not_there_is_an_error() -> None:
     with pytest.raises(dartcast.Error, match="none.toml"):
-        dartcast.read_scene("none.toml")
+        dartcast.formats.read_scene("none.toml")
 
 
 def test_an_edit_that_is_refused_leaves_the_environment() -> None:
     environment = dartcast.Environment(dartcast.generate_box())
     before = environment.edit_count
 
-    def inside_out(edit: dartcast.ComplexEdit) -> None:
+    def inside_out(edit: dartcast.topology.ComplexEdit) -> None:
         raise dartcast.EditRefused("by its function")
 
     with pytest.raises(dartcast.EditRefused, match="by its function"):
@@ -44,7 +44,7 @@ def test_an_edit_that_is_refused_leaves_the_environment() -> None:
 def test_an_environment_in_use_says_so() -> None:
     environment = dartcast.Environment(dartcast.generate_box())
 
-    def reads(edit: dartcast.ComplexEdit) -> None:
+    def reads(edit: dartcast.topology.ComplexEdit) -> None:
         environment.validity()
 
     with pytest.raises(dartcast.InUse, match="in use"):

@@ -44,10 +44,10 @@ CASES = {
     # Lists by patch without names, and an empty one.
     "summaries of any content": """
         import dartcast as d
-        d.summary_json(d.Summary()); d.summary_text(d.Summary()); d.histogram_text(d.Summary())
-        wrong = d.Summary(totals=d.SimulationTotals(contacts_by_patch=[0, 1, 2]))
-        planes = d.Summary(statistics=d.StatisticsSummary(planes=[d.PlaneTotals()]))
-        for call in (d.summary_json, d.summary_text):
+        d.formats.summary_json(d.Summary()); d.formats.summary_text(d.Summary()); d.formats.histogram_text(d.Summary())
+        wrong = d.Summary(totals=d.records.SimulationTotals(contacts_by_patch=[0, 1, 2]))
+        planes = d.Summary(statistics=d.formats.StatisticsSummary(planes=[d.records.PlaneTotals()]))
+        for call in (d.formats.summary_json, d.formats.summary_text):
             for summary in (wrong, planes):
                 try: call(summary)
                 except d.InvalidArgument: continue
@@ -87,7 +87,7 @@ CASES = {
                 assert name in without_members, f"{name}: not refused"
         new = lambda cls: cls.__new__(cls)
         for use in (lambda: d.WallResponses(new(d.Slide)), lambda: d.Environment(new(d.MeshData)),
-                    lambda: d.audit(new(d.CellComplex), new(d.Particles))):
+                    lambda: d.audit(new(d.topology.CellComplex), new(d.Particles))):
             try: use()
             except TypeError: continue
             raise AssertionError("not refused")

@@ -63,7 +63,7 @@ def test_a_simulation(use: Callable[[dartcast.Simulation], object]) -> None:
 
     def run(inside: Callable[[], None]) -> None:
         simulation.set_after_edit(once(inside))
-        simulation.edit(lambda edit: dartcast.subdivide(edit, int(edit.map.cells()[0])))
+        simulation.edit(lambda edit: dartcast.topology.subdivide(edit, int(edit.map.cells()[0])))
 
     refused_while(run, lambda: use(simulation))
     simulation.set_after_edit(None)

@@ -21,7 +21,7 @@ import memory_growth
 import numpy as np
 import dartcast
 kept, libc, python = [], ctypes.CDLL(None), ctypes.pythonapi
-map_ = dartcast.CombinatorialMap(dartcast.generate_box())
+map_ = dartcast.topology.CombinatorialMap(dartcast.generate_box())
 
 def append(): kept.append(None)
 def malloc(): libc.malloc(16)

@@ -214,10 +214,10 @@ def test_arrays_that_contradict_each_other_are_refused_by_calls_that_read_them(b
     with pytest.raises(dartcast.InvalidArgument, match=text):
         mesh.cells
     with pytest.raises(dartcast.InvalidArgument, match=text):
-        dartcast.select_patches(mesh, [])
+        dartcast.formats.select_patches(mesh, [])
     assert not dartcast.check_and_repair(mesh).valid
     with pytest.raises(dartcast.InvalidMesh):
-        dartcast.CombinatorialMap(mesh)
+        dartcast.topology.CombinatorialMap(mesh)
 
 
 def test_cells_and_faces_can_be_added():
@@ -247,14 +247,14 @@ def test_copies_are_independent_and_pickles_are_equal():
 
 
 def test_type_names_and_dimensions():
-    assert dartcast.CELL_TYPE_NAMES[dartcast.CellType.PRISM] == "prism"
-    assert [dartcast.dimension(t) for t in dartcast.CellType] == [3] * 5 + [2] * 3
+    assert dartcast.formats.CELL_TYPE_NAMES[dartcast.CellType.PRISM] == "prism"
+    assert [dartcast.formats.dimension(t) for t in dartcast.CellType] == [3] * 5 + [2] * 3
     with pytest.raises(ValueError, match="is no CellType"):
-        dartcast.dimension(8)
+        dartcast.formats.dimension(8)
 
 
 def test_an_empty_mesh_is_refused_where_it_matters():
     mesh = dartcast.MeshData()
     assert mesh.cell_count == 0 and mesh.cells == {}
     with pytest.raises(dartcast.InvalidMesh):
-        dartcast.CellComplex(mesh)
+        dartcast.topology.CellComplex(mesh)

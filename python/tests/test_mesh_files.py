@@ -14,13 +14,13 @@ def mixed_box():
     return dartcast.generate_box(cells=[2, 2, 2], mixed=True, blocked_layer=False, seed=3)
 
 
-@pytest.mark.parametrize("ending", sorted(set(dartcast.mesh_endings()) & set(dartcast.writable_mesh_endings())))
+@pytest.mark.parametrize("ending", sorted(set(dartcast.formats.mesh_endings()) & set(dartcast.formats.writable_mesh_endings())))
 def test_a_written_mesh_is_read_back(tmp_path, ending):
     mesh = mixed_box()
     path = tmp_path / ("box" + ending)
     dartcast.write_mesh(mesh, path)
     back, report = dartcast.read_mesh(path)
-    assert report.valid and report.verdict is dartcast.Verdict.ACCEPT
+    assert report.valid and report.verdict is dartcast.formats.Verdict.ACCEPT
     assert np.array_equal(back.points, mesh.points)
     assert {name: len(cells) for name, cells in back.cells.items()} == {n: len(c) for n, c in mesh.cells.items()}
     assert len(back.patch_tags) == len(mesh.patch_tags)
@@ -56,8 +56,8 @@ def test_files_of_tetgen_are_read(tmp_path):
 def test_a_mesh_around_a_surface(tmp_path):
     surface = tmp_path / "tetrahedron.off"
     surface.write_text("OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n", encoding="utf-8")
-    scene = dartcast.SurfaceScene(surfaces=[dartcast.NamedSurface(region="lumen", file=surface)], box=2.0)
-    mesh, report = dartcast.mesh_surfaces(scene)
+    scene = dartcast.formats.SurfaceScene(surfaces=[dartcast.formats.NamedSurface(region="lumen", file=surface)], box=2.0)
+    mesh, report = dartcast.formats.mesh_surfaces(scene)
     assert report.valid, report
     corners = mesh.points[mesh.cells["tetra"]]
     edges = corners[:, 1:] - corners[:, :1]
@@ -66,14 +66,14 @@ def test_a_mesh_around_a_surface(tmp_path):
     assert volumes[lumen].sum() == pytest.approx(1.0 / 6.0, rel=1e-12)
     assert volumes.sum() == pytest.approx(8.0, rel=1e-12)
     with pytest.raises(dartcast.InvalidArgument, match="box"):
-        dartcast.mesh_surfaces(dartcast.SurfaceScene(surfaces=scene.surfaces, box=1.0))
+        dartcast.formats.mesh_surfaces(dartcast.formats.SurfaceScene(surfaces=scene.surfaces, box=1.0))
 
 
 def test_paths_may_be_texts_or_paths(tmp_path):
     path = tmp_path / "box.vtu"
     dartcast.write_mesh(mixed_box(), str(path))
     for given in (path, str(path), pathlib.PurePath(path)):
-        assert dartcast.read_valid_mesh(given).report.valid
+        assert dartcast.formats.read_valid_mesh(given).report.valid
         assert dartcast.check_mesh(given, threads=1).report.valid
     with pytest.raises(TypeError):
         dartcast.read_mesh(3)
@@ -81,12 +81,12 @@ def test_paths_may_be_texts_or_paths(tmp_path):
 
 def test_a_file_that_is_no_mesh_is_a_defect_or_an_error(tmp_path):
     path = tmp_path / "broken.msh"
-    dartcast.write_bytes(path, b"$MeshFormat\nnonsense\n")
+    dartcast.formats.write_bytes(path, b"$MeshFormat\nnonsense\n")
     assert path.read_bytes() == b"$MeshFormat\nnonsense\n"
     report = dartcast.read_mesh(path).report
     assert not report.valid and report.defects[0].kind == "file"
     with pytest.raises(dartcast.InvalidMesh, match="broken.msh"):
-        dartcast.read_valid_mesh(path)
+        dartcast.formats.read_valid_mesh(path)
     with pytest.raises(dartcast.InvalidMesh):
         dartcast.read_surface(tmp_path / "missing.stl")
 
@@ -111,11 +111,11 @@ def test_a_memory_limit_is_kept(tmp_path):
 def test_surfaces(tmp_path):
     path = tmp_path / "tetra.off"
     path.write_text("OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n")
-    assert dartcast.is_surface_file(path) and not dartcast.is_surface_file("a.vtu")
-    assert ".off" in dartcast.surface_endings()
+    assert dartcast.formats.is_surface_file(path) and not dartcast.formats.is_surface_file("a.vtu")
+    assert ".off" in dartcast.formats.surface_endings()
     mesh, report = dartcast.read_surface(path)
     assert report.valid and report.surface and mesh.cell_count == 4
-    assert dartcast.check_surface(path).report.cells == {"triangle": 4}
+    assert dartcast.formats.check_surface(path).report.cells == {"triangle": 4}
 
 
 def test_the_mesh_of_a_file_can_be_changed_in_place(tmp_path):

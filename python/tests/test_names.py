@@ -1,6 +1,6 @@
 """Every public name of C++ has its name in Python, and the other way round. Exceptions: names/*.toml, each with a reason.
 
-Rules: `A::b` is `dartcast.A.b`. Values of enumerations and constants are in upper case. Operators are the methods that
+Rules: `A::b` is `dartcast.A.b`, or in one of its modules. Values of enumerations and constants are in upper case. Operators are the methods that
 Python has for them. An exemption of a class holds for all its members.
 """
 from __future__ import annotations
@@ -19,6 +19,7 @@ sys.path.insert(0, str(ROOT / "tools"))
 
 import read_headers  # noqa: E402
 
+MODULES = (dartcast, dartcast.formats, dartcast.predicates, dartcast.records, dartcast.topology)
 OPERATORS = {"operator[]": "__getitem__", "operator==": "__eq__", "operator+=": "__iadd__", "operator-=": "__isub__",
              "operator*=": "__imul__", "operator+": "__add__", "operator-": "__sub__", "operator*": "__mul__",
              "operator()": "__call__", "size": "__len__"}
@@ -53,7 +54,8 @@ def python_name(name: read_headers.Name) -> str | None:
 
 def has(name: str) -> bool:
     """Whether dartcast.NAME exists; size may be __len__."""
-    at: object = dartcast
+    first = name.split(".")[0]
+    at: object = next((module for module in MODULES if hasattr(module, first)), dartcast)
     for part in name.split("."):
         if part == "size" and not hasattr(at, part):
             part = "__len__"
@@ -74,8 +76,9 @@ def public(names: object) -> list[str]:
 def python_names() -> set[str]:
     """All public names of the package: functions, classes, their members."""
     found: set[str] = set()
-    for name in public(vars(dartcast)):
-        value = getattr(dartcast, name)
+    everything = {name: value for module in MODULES for name, value in vars(module).items()}
+    for name in public(everything):
+        value = everything[name]
         if isinstance(value, type(dartcast)):
             continue  # a module
         found.add(name)
@@ -140,7 +143,7 @@ def test_every_class_and_function_has_a_docstring() -> None:
         wanted = python_name(found)
         if found.kind not in ("class", "enum", "function") or wanted is None or not has(wanted) or "__" in wanted:
             continue
-        value: object = dartcast
+        value: object = next(module for module in MODULES if hasattr(module, wanted.split(".")[0]))
         for part in wanted.split("."):
             value = getattr(value, part)
         if (callable(value) or found.doc) and not described(value):

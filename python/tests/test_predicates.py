@@ -7,7 +7,7 @@ import dartcast
 import numpy as np
 import pytest
 
-Sign = dartcast.Sign
+Sign = dartcast.predicates.Sign
 
 
 def exact_sign(points):
@@ -20,65 +20,65 @@ def exact_sign(points):
 def test_signs_of_arrays_are_those_of_rational_arithmetic():
     rng = np.random.default_rng(1)
     points = rng.integers(-3, 4, (4, 500, 3)) * 0.1 + rng.integers(0, 2, (4, 500, 3)) * 1e-17
-    signs = dartcast.orient3d(*points)
+    signs = dartcast.predicates.orient3d(*points)
     assert signs.dtype == np.int8 and signs.shape == (500,)
     assert signs.tolist() == [exact_sign(points[:, i]) for i in range(500)]
-    assert np.array_equal(signs, dartcast.orient3d_exact(*points))
-    assert np.array_equal(signs, np.sign(dartcast.orient3d_value(*points)))
+    assert np.array_equal(signs, dartcast.predicates.orient3d_exact(*points))
+    assert np.array_equal(signs, np.sign(dartcast.predicates.orient3d_value(*points)))
     assert {-1, 0, 1} == set(signs.tolist())
 
 
 def test_single_points_give_a_sign():
-    sign = dartcast.orient3d([0, 0, 0], (1, 0, 0), np.array([0.0, 1, 0]), [0, 0, 1])
+    sign = dartcast.predicates.orient3d([0, 0, 0], (1, 0, 0), np.array([0.0, 1, 0]), [0, 0, 1])
     assert sign is Sign.POSITIVE
-    assert dartcast.orient2d([0, 0, 9], [1, 0, 0], [0, -1, 5]) is Sign.NEGATIVE
-    assert dartcast.orient2d_exact([0, 0, 0], [1, 1, 0], [2, 2, 0]) is Sign.ZERO
-    assert dartcast.orient2d_value([0, 0, 0], [2, 0, 0], [0, 3, 0]) == 6.0
-    assert dartcast.orient3d([np.nan, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]) is Sign.UNDECIDABLE
+    assert dartcast.predicates.orient2d([0, 0, 9], [1, 0, 0], [0, -1, 5]) is Sign.NEGATIVE
+    assert dartcast.predicates.orient2d_exact([0, 0, 0], [1, 1, 0], [2, 2, 0]) is Sign.ZERO
+    assert dartcast.predicates.orient2d_value([0, 0, 0], [2, 0, 0], [0, 3, 0]) == 6.0
+    assert dartcast.predicates.orient3d([np.nan, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]) is Sign.UNDECIDABLE
 
 
 def test_a_single_point_counts_for_all_rows():
     d = np.array([[0.0, 0, 1], [0, 0, -1], [1, 1, 0]])
-    assert dartcast.orient3d([0, 0, 0], [1, 0, 0], [0, 1, 0], d).tolist() == [1, -1, 0]
+    assert dartcast.predicates.orient3d([0, 0, 0], [1, 0, 0], [0, 1, 0], d).tolist() == [1, -1, 0]
 
 
 def test_other_arrays_are_refused():
     one = np.zeros((2, 3))
     with pytest.raises(dartcast.InvalidArgument, match="c: expected 2 points"):
-        dartcast.orient3d(one, one, np.zeros((3, 3)), one)
+        dartcast.predicates.orient3d(one, one, np.zeros((3, 3)), one)
     with pytest.raises(TypeError, match="b: expected float64"):
-        dartcast.orient2d(one, one.astype(np.float32), one)
+        dartcast.predicates.orient2d(one, one.astype(np.float32), one)
     with pytest.raises(TypeError, match="a: expected three numbers"):
-        dartcast.orient2d([0, 0], one, one)
+        dartcast.predicates.orient2d([0, 0], one, one)
 
 
 def test_ranges_and_flushing():
     points = np.array([[1e-301, 0, 1], [1e91, 0, 0], [np.inf, 0, 0]])
-    assert dartcast.in_exact_range(points).tolist() == [True, False, False]
-    assert dartcast.in_exact_range([0, 0, 0]) is True
-    assert dartcast.flushed(points)[0].tolist() == [0, 0, 1] and dartcast.flushed([1e-301, 0, 0]).tolist() == [0, 0, 0]
-    assert dartcast.LARGEST_MAGNITUDE == 2.0**300 and dartcast.SMALLEST_MAGNITUDE == 2.0**-300
+    assert dartcast.predicates.in_exact_range(points).tolist() == [True, False, False]
+    assert dartcast.predicates.in_exact_range([0, 0, 0]) is True
+    assert dartcast.predicates.flushed(points)[0].tolist() == [0, 0, 1] and dartcast.predicates.flushed([1e-301, 0, 0]).tolist() == [0, 0, 0]
+    assert dartcast.predicates.LARGEST_MAGNITUDE == 2.0**300 and dartcast.predicates.SMALLEST_MAGNITUDE == 2.0**-300
 
 
 def test_bounds_of_the_filters():
-    assert dartcast.extent_of(np.array([[1.0, -5, 2], [-3, 1, 1]])).tolist() == [3, 5, 2]
+    assert dartcast.predicates.extent_of(np.array([[1.0, -5, 2], [-3, 1, 1]])).tolist() == [3, 5, 2]
     with pytest.raises(dartcast.InvalidArgument):
-        dartcast.extent_of(np.zeros((0, 3)))
-    assert dartcast.rounds_nothing([4, 4, 4], np.array([[1.0, 2, 3], [4, 0, 1]]))
-    assert not dartcast.rounds_nothing([4, 4, 4], np.array([[0.1, 2, 3]]))
-    assert dartcast.bound_holds([1, 1, 1]) and not dartcast.bound_holds([0, 1, 1])
-    assert dartcast.filter_applies([1, 1, 1]) and not dartcast.filter_applies([1, 1, 1e80])
-    assert dartcast.are_extents([1, 1, 1], 2.0) and dartcast.are_plane_extents(1, 1, 2)
-    assert dartcast.plane_bound_holds(1, 1) and not dartcast.plane_filter_applies(1, 1e80)
-    assert 0 < dartcast.PLANE_ERROR < dartcast.DETERMINANT_ERROR < 1e-14
+        dartcast.predicates.extent_of(np.zeros((0, 3)))
+    assert dartcast.predicates.rounds_nothing([4, 4, 4], np.array([[1.0, 2, 3], [4, 0, 1]]))
+    assert not dartcast.predicates.rounds_nothing([4, 4, 4], np.array([[0.1, 2, 3]]))
+    assert dartcast.predicates.bound_holds([1, 1, 1]) and not dartcast.predicates.bound_holds([0, 1, 1])
+    assert dartcast.predicates.filter_applies([1, 1, 1]) and not dartcast.predicates.filter_applies([1, 1, 1e80])
+    assert dartcast.predicates.are_extents([1, 1, 1], 2.0) and dartcast.predicates.are_plane_extents(1, 1, 2)
+    assert dartcast.predicates.plane_bound_holds(1, 1) and not dartcast.predicates.plane_filter_applies(1, 1e80)
+    assert 0 < dartcast.predicates.PLANE_ERROR < dartcast.predicates.DETERMINANT_ERROR < 1e-14
 
 
 def test_perturbations_leave_no_tie():
-    p = dartcast.SymbolicPerturbation([0, 0, 0], np.array([[1.0, 2, 3]]))
+    p = dartcast.predicates.SymbolicPerturbation([0, 0, 0], np.array([[1.0, 2, 3]]))
     assert p.of_line([1, 0, 0], [2, 0, 0], [3, 1, 0]) in (Sign.POSITIVE, Sign.NEGATIVE)
-    plane = dartcast.PlanarSymbolicPerturbation([0, 0, 0], np.zeros((0, 3)))
+    plane = dartcast.predicates.PlanarSymbolicPerturbation([0, 0, 0], np.zeros((0, 3)))
     assert plane.of_line([1, 0, 0]) in (Sign.POSITIVE, Sign.NEGATIVE)
     with pytest.raises(dartcast.InvalidArgument, match="at most 3"):
-        dartcast.SymbolicPerturbation([0, 0, 0], np.zeros((4, 3)))
+        dartcast.predicates.SymbolicPerturbation([0, 0, 0], np.zeros((4, 3)))
     with pytest.raises(dartcast.InvalidArgument, match="not finite"):
         p.of_line([1, 0, np.nan], [2, 0, 0], [3, 1, 0])

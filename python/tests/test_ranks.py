@@ -142,7 +142,7 @@ def stepped_alone():
 
 
 def stepped(ranks):
-    environment = dartcast.SharedEnvironment(dartcast.box_part(BOX, ranks.size, ranks.rank), ranks, threads=1)
+    environment = dartcast.SharedEnvironment(dartcast.formats.box_part(BOX, ranks.size, ranks.rank), ranks, threads=1)
     particles = dartcast.SharedParticles(1)
     assert (environment.add(particles, starts()) == dartcast.Place.FREE).all()
     for i, identity in enumerate(particles.ids):
@@ -165,7 +165,7 @@ def test_a_shared_environment_steps_as_one():
 
 
 def test_simulations_are_shared():
-    scene = dartcast.parse_scene(SCENE_TEXT, "scene.toml")
+    scene = dartcast.formats.parse_scene(SCENE_TEXT, "scene.toml")
 
     def simulate(ranks, partition="particles"):
         simulation = dartcast.Simulation(scene, 1, ranks, partition)
@@ -180,11 +180,11 @@ def test_simulations_are_shared():
 
 
 def test_a_part_may_be_the_mesh_of_a_scene():
-    scene = dartcast.parse_scene(SCENE_TEXT, "scene.toml")
+    scene = dartcast.formats.parse_scene(SCENE_TEXT, "scene.toml")
 
     def simulate(ranks):
-        own = dartcast.parse_scene(SCENE_TEXT, "scene.toml")
-        own.environment.mesh = dartcast.box_part(scene.environment.mesh, ranks.size, ranks.rank)
+        own = dartcast.formats.parse_scene(SCENE_TEXT, "scene.toml")
+        own.environment.mesh = dartcast.formats.box_part(scene.environment.mesh, ranks.size, ranks.rank)
         simulation = dartcast.Simulation(own, 1, ranks, "cells")
         for _ in range(20):
             simulation.step()

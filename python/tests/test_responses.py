@@ -68,7 +68,7 @@ def test_a_ready_callback_does_the_same():
 
 
 def test_an_acceleration_gives_the_energy_of_the_contact():
-    fall = dartcast.Acceleration([0, 0, -10.0], DT)
+    fall = dartcast.records.Acceleration([0, 0, -10.0], DT)
     x, v, status, _ = step(Reflect(), acceleration=fall)
     assert v[2] < 0 and status == ParticleStatus.ALIVE
     assert not np.array_equal(x, step(Reflect())[0])
@@ -117,10 +117,10 @@ def test_responses_by_patch_are_read_back():
     env, _, _ = scene()
     r = dartcast.WallResponses({None: Slide(), "zmax": Reflect(0.25)}, env.map)
     top = env.map.patch_names.index("zmax")
-    assert r.of(top) == dartcast.WallResponse(dartcast.WallResponseKind.REFLECT, 0.25, 0.0)
-    assert r.of(1).kind == dartcast.WallResponseKind.SLIDE
+    assert r.of(top) == dartcast.WallResponse(dartcast.records.WallResponseKind.REFLECT, 0.25, 0.0)
+    assert r.of(1).kind == dartcast.records.WallResponseKind.SLIDE
     r.set(1, Stick())
-    assert r.of(1).kind == dartcast.WallResponseKind.STICK and r.of(60000).kind == dartcast.WallResponseKind.SLIDE
+    assert r.of(1).kind == dartcast.records.WallResponseKind.STICK and r.of(60000).kind == dartcast.records.WallResponseKind.SLIDE
     with pytest.raises(dartcast.InvalidArgument, match="number"):
         dartcast.WallResponses({"zmax": Slide()})
     with pytest.raises(TypeError):
@@ -149,10 +149,10 @@ def test_stopped_particles_are_held():
     v[:] = [[0.0, 0.0, 10.0]]
     report = env.advance(parts, targets, options=options)
     assert len(report.stopped) == 1
-    dartcast.hold_stopped(report, Reflect(), v, None, DT)
+    dartcast.records.hold_stopped(report, Reflect(), v, None, DT)
     assert v[0, 2] <= 1e-12
     for velocities, fates, error in ((np.zeros((0, 3)), None, dartcast.InvalidArgument),
                                      (v, np.zeros(2, dtype=np.uint8), dartcast.InvalidArgument),
                                      (v, np.zeros(1), TypeError)):
         with pytest.raises(error):
-            dartcast.hold_stopped(report, Slide(), velocities, fates, DT)
+            dartcast.records.hold_stopped(report, Slide(), velocities, fates, DT)

@@ -53,7 +53,7 @@ def test_texts_and_numbers_of_dicts_survive() -> None:
                     '"\\u007f" = "tetrahedron"\n')
     with pytest.raises(TypeError, match=r"a\[1\].b: .*object"):
         dartcast.scene_text({"a": [1, {"b": object()}]})
-    scene = dartcast.parse_scene(dartcast.scene_text(BAR | {"environment": {"generator": "box",
+    scene = dartcast.formats.parse_scene(dartcast.scene_text(BAR | {"environment": {"generator": "box",
                                                                            "type": dartcast.CellType.TETRAHEDRON}}), "x")
     assert scene.environment.mesh.type == dartcast.CellType.TETRAHEDRON
 
@@ -98,16 +98,16 @@ def test_ctrl_c_ends_a_run_between_two_steps(tmp_path: pathlib.Path) -> None:
 
 def test_a_run_leaves_its_report(tmp_path: pathlib.Path) -> None:
     summary = dartcast.run(BAR, tmp_path / "a")
-    assert summary.report is not None and summary.report.file == dartcast.report_file(tmp_path / "a")
+    assert summary.report is not None and summary.report.file == dartcast.formats.report_file(tmp_path / "a")
     page = summary.report.file.read_text(encoding="utf-8")
     assert page.startswith("<!doctype html>") and len(page.encode()) == summary.report.bytes
     assert (summary.report.particles, summary.report.frames, summary.report.notes) == (50, 3, [])
-    few = dartcast.write_report(tmp_path / "a", dartcast.ReportOptions(particles=7, frames=2))
+    few = dartcast.formats.write_report(tmp_path / "a", dartcast.formats.ReportOptions(particles=7, frames=2))
     assert (few.particles, few.particles_of_run, few.frames, few.frames_recorded) == (7, 50, 2, 3)
     assert len(few.notes) == 2
     with pytest.raises(dartcast.Error, match="report.bin"):
-        dartcast.write_report(tmp_path / "none")
+        dartcast.formats.write_report(tmp_path / "none")
     with pytest.raises(dartcast.InvalidArgument, match="at least one particle"):
-        dartcast.write_report(tmp_path / "a", dartcast.ReportOptions(particles=0))
+        dartcast.formats.write_report(tmp_path / "a", dartcast.formats.ReportOptions(particles=0))
     assert dartcast.run(BAR | {"output": {"report": False}}, tmp_path / "b").report is None
-    assert not dartcast.report_file(tmp_path / "b").exists()
+    assert not dartcast.formats.report_file(tmp_path / "b").exists()

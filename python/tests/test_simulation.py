@@ -74,7 +74,7 @@ def test_statistics_count_all_contacts() -> None:
 def test_crossings_are_those_of_the_signs() -> None:
     random = np.random.default_rng(1)
     before, after = random.uniform(-1, 1, (2, 1000, 3))
-    found = dartcast.find_crossings([dartcast.SectionPlane("p", [0, 0, 0], [0, 0, 2])], before, after)
+    found = dartcast.records.find_crossings([dartcast.SectionPlane("p", [0, 0, 0], [0, 0, 2])], before, after)
     crossed = (before[:, 2] < 0) != (after[:, 2] < 0)
     assert np.array_equal(found["particle"], np.flatnonzero(crossed))
     assert np.array_equal(found["forward"], after[crossed, 2] >= 0)
@@ -95,7 +95,7 @@ def test_events_cut_while_particles_flow() -> None:
                                      dartcast.SimulationOptions(dt=1e-3))
     simulation.add_random(200, [0.0, 0.0, 0.1])
     cut = dartcast.Cut(dartcast.Disc(centre=[0.0, 0.0, -0.012], radius=6e-3), 1.2e-3)
-    report = dartcast.apply(simulation, dartcast.Event(0.0, cut))
+    report = dartcast.records.apply(simulation, dartcast.Event(0.0, cut))
     assert report.cells_added > report.cells_removed > 0 and report.cells_opened > 0
     simulation.step()
     assert simulation.audit().failed == 0
@@ -107,7 +107,7 @@ def test_setters_refuse_what_is_out_of_range() -> None:
     before = simulation.state_hash().hex()
     environment = simulation.environment
     n = len(environment.positions)
-    plane = dartcast.plane_through([2.0, 2.0, 14.0], [0.0, 0.0, 1.0])
+    plane = dartcast.topology.plane_through([2.0, 2.0, 14.0], [0.0, 0.0, 1.0])
     wrong = [
         lambda: simulation.add(np.full((2, 3), 2.5), np.zeros((3, 3))),
         lambda: simulation.add(np.full((2, 3), 2.5), [np.inf, 0.0, 0.0]),
@@ -120,8 +120,8 @@ def test_setters_refuse_what_is_out_of_range() -> None:
         lambda: simulation.add_inlet(60000, 1.0, [0.0, 0.0, 1.0]),
         lambda: simulation.add_body(np.full((1, 3), 2.5), dartcast.BodyOptions(mass=-1.0)),
         lambda: simulation.set_events([dartcast.Event(-1.0, dartcast.Cut(plane, 0.1))]),
-        lambda: simulation.set_adaptive_subdivision(dartcast.AdaptiveSubdivisionScene(
-            1, dartcast.AdaptiveSubdivisionOptions(max_particles=1, min_particles=2))),
+        lambda: simulation.set_adaptive_subdivision(dartcast.formats.AdaptiveSubdivisionScene(
+            1, dartcast.records.AdaptiveSubdivisionOptions(max_particles=1, min_particles=2))),
         lambda: simulation.set_deformation(dartcast.Deformation([], np.zeros((n + 1, 3)))),
         lambda: simulation.pull(np.zeros((n + 1, 3)), 1.0),
         lambda: simulation.pull(np.zeros((n, 3)), -1.0),
@@ -151,10 +151,10 @@ def test_a_function_is_called_once_after_each_edit() -> None:
     cells: list[int] = []
     simulation.set_after_edit(lambda environment: cells.append(environment.map.cell_count()))
     for _ in range(3):
-        simulation.edit(lambda edit: dartcast.subdivide(edit, int(edit.map.cells()[0])))
+        simulation.edit(lambda edit: dartcast.topology.subdivide(edit, int(edit.map.cells()[0])))
     assert cells == sorted(set(cells)) and len(cells) == 3 and cells[-1] == simulation.environment.map.cell_count()
     simulation.set_after_edit(None)
-    simulation.edit(lambda edit: dartcast.subdivide(edit, int(edit.map.cells()[0])))
+    simulation.edit(lambda edit: dartcast.topology.subdivide(edit, int(edit.map.cells()[0])))
     assert len(cells) == 3
 
 
@@ -168,7 +168,7 @@ def test_an_exception_after_an_edit_comes_out_as_itself() -> None:
 
     simulation.set_after_edit(fail)
     with pytest.raises(ArithmeticError, match="mine"):
-        simulation.edit(lambda edit: dartcast.subdivide(edit, int(edit.map.cells()[0])))
+        simulation.edit(lambda edit: dartcast.topology.subdivide(edit, int(edit.map.cells()[0])))
     simulation.set_after_edit(None)
     assert simulation.environment.map.cell_count() > before  # the edit is whole: the function is called at its end
     simulation.step()
@@ -180,8 +180,8 @@ def test_an_exception_in_an_edit_undoes_it() -> None:
     simulation.add_random(50, [1.0, 2.0, 3.0])
     before = simulation.state_hash().hex(), simulation.environment.map.cell_count(), simulation.environment.edit_count
 
-    def fail(edit: dartcast.ComplexEdit) -> None:
-        dartcast.subdivide(edit, int(edit.map.cells()[0]))
+    def fail(edit: dartcast.topology.ComplexEdit) -> None:
+        dartcast.topology.subdivide(edit, int(edit.map.cells()[0]))
         raise KeyError("mine")
 
     with pytest.raises(KeyError, match="mine"):
@@ -214,9 +214,9 @@ def vessel(events: list[dartcast.Event]) -> dartcast.Simulation:
 
 @pytest.mark.parametrize("kind, what", [
     ("CUT", lambda: dartcast.Cut(dartcast.Disc(centre=[0.0, 0.0, -0.012], radius=6e-3), 1.2e-3)),
-    ("CARVE", lambda: dartcast.Carve(dartcast.box_tool([-4e-3, -4e-3, -4e-3], [4e-3, 4e-3, 4e-3]), "open")),
-    ("LIGATURE", lambda: dartcast.Ligature(dartcast.plane_through([0.0, 0.0, 0.0], [0.0, 0.0, 1.0]), [0.0, 0.0, 0.0],
-                                           dartcast.TyingOptions(0.2, 5e-3), 2e-3)),
+    ("CARVE", lambda: dartcast.Carve(dartcast.topology.box_tool([-4e-3, -4e-3, -4e-3], [4e-3, 4e-3, 4e-3]), "open")),
+    ("LIGATURE", lambda: dartcast.Ligature(dartcast.topology.plane_through([0.0, 0.0, 0.0], [0.0, 0.0, 1.0]), [0.0, 0.0, 0.0],
+                                           dartcast.topology.TyingOptions(0.2, 5e-3), 2e-3)),
     ("OPEN", lambda: dartcast.OpenCells(np.flatnonzero(dartcast.generate_vessel().free == 0)[:100])),
     ("CLOSE", lambda: dartcast.CloseCells(np.flatnonzero(dartcast.generate_vessel().free)[:100]))])
 def test_events_happen_at_their_time(kind: str, what: object) -> None:
@@ -228,14 +228,14 @@ def test_events_happen_at_their_time(kind: str, what: object) -> None:
         reports.append(len(simulation.event_log.events))
     assert reports == [0, 0, 1, 1]  # before the step that begins at 2 ms
     event, = simulation.event_log.events
-    assert event.kind == dartcast.EventKind[kind] and event.step == 2 and event.time == pytest.approx(2e-3)
+    assert event.kind == dartcast.records.EventKind[kind] and event.step == 2 and event.time == pytest.approx(2e-3)
     assert event.cells_added + event.cells_opened + event.cells_blocked > 0
     assert simulation.audit().failed == 0
 
 
 def test_events_that_cannot_happen_name_themselves() -> None:
-    far = dartcast.Ligature(dartcast.plane_through([0.0, 0.0, 9.0], [0.0, 0.0, 1.0]), [0.0, 0.0, 9.0],
-                            dartcast.TyingOptions(0.2, 5e-3), 2e-3)
+    far = dartcast.Ligature(dartcast.topology.plane_through([0.0, 0.0, 9.0], [0.0, 0.0, 1.0]), [0.0, 0.0, 9.0],
+                            dartcast.topology.TyingOptions(0.2, 5e-3), 2e-3)
     simulation = vessel([dartcast.Event(0.0, far)])
     with pytest.raises(dartcast.Error, match="event"):
         simulation.step()
@@ -246,8 +246,8 @@ def test_crowded_cells_are_subdivided_and_merged() -> None:
     simulation = dartcast.Simulation(dartcast.Environment(dartcast.generate_box(cells=[2, 2, 2])),
                                      dartcast.SimulationOptions(dt=0.1))
     simulation.add(np.random.default_rng(1).uniform(0.01, 0.49, (60, 3)), [0.0, 0.0, 0.0])
-    simulation.set_adaptive_subdivision(dartcast.AdaptiveSubdivisionScene(
-        0, dartcast.AdaptiveSubdivisionOptions(max_particles=30, min_particles=4)))
+    simulation.set_adaptive_subdivision(dartcast.formats.AdaptiveSubdivisionScene(
+        0, dartcast.records.AdaptiveSubdivisionOptions(max_particles=30, min_particles=4)))
     report = simulation.adapt()
     assert report.subdivided == 1 and report.merged == 0 and report.waiting == 0 and not report.refused
     assert simulation.environment.map.cell_count() > 8 and simulation.audit().failed == 0

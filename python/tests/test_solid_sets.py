@@ -19,11 +19,11 @@ def with_obstacle() -> dc.Environment:
 def test_an_edge_does_not_cut_a_corner() -> None:
     solids = dc.SolidSet(with_obstacle())
     placed = solids.add(dc.solid_of_polyline(np.array([[2.5, 0.5, 1.5], [2.5, 0.5, 3.7]])))
-    assert placed.solid == 0 and placed.refusal == dc.SolidRefusal.NONE and len(placed.vertices) == 0
+    assert placed.solid == 0 and placed.refusal == dc.records.SolidRefusal.NONE and len(placed.vertices) == 0
     step = solids.advance(np.array([[2.5, 2.1, 1.5], [2.5, 2.1, 3.7]]), dc.SolidStepOptions(rounds=0))
     assert step.cut == 1 and step.made[0] == pytest.approx(15 / 16 * 1.5 / 1.6, abs=1e-5)
     contact = step.contacts[0]
-    assert contact["kind"] == dc.SolidContactKind.EDGE_EDGE and contact["wall_kind"] == dc.Kind.EDGE
+    assert contact["kind"] == dc.records.SolidContactKind.EDGE_EDGE and contact["wall_kind"] == dc.Kind.EDGE
     assert contact["count"] == 2 and list(contact["vertices"][:2]) == [0, 1]
     assert contact["normal"][1] == pytest.approx(-1.0) and contact["wall_point"][1] == pytest.approx(2.0)
     assert contact["weights"].sum() == pytest.approx(1.0)
@@ -36,7 +36,7 @@ def test_a_place_that_is_not_free_is_refused() -> None:
     solids = dc.SolidSet(with_obstacle())
     placed = solids.add(dc.SolidMesh(np.array([[0.5, 2.5, 2.5], [1.5, 2.5, 2.5], [3.5, 2.5, 2.5]]),
                                      edges=np.array([[0, 1], [1, 2]])))
-    assert placed.refusal == dc.SolidRefusal.MEETS_WALL and placed.solid is None and list(placed.vertices) == [1, 2]
+    assert placed.refusal == dc.records.SolidRefusal.MEETS_WALL and placed.solid is None and list(placed.vertices) == [1, 2]
     assert len(solids) == solids.size == 0 and solids.stuck == []
 
 

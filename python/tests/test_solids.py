@@ -216,7 +216,7 @@ def test_catheters_refuse_what_is_out_of_range() -> None:
 
 def test_cameras_are_evenly_spaced_along_a_line() -> None:
     points = np.array([[0.0, 0.0, 0.01 * k] for k in range(1, 5)])
-    path = dartcast.camera_path(tube(), points, dartcast.CameraOptions(spacing=2e-3, up=[0.0, 1.0, 0.0]))
+    path = dartcast.camera_path(tube(), points, dartcast.records.CameraOptions(spacing=2e-3, up=[0.0, 1.0, 0.0]))
     assert path.at_walls == 0 and len(path.cameras) == 16
     for k, camera in enumerate(path.cameras):
         assert np.allclose(camera.position, [0.0, 0.0, 0.01 + 2e-3 * k], atol=1e-9)
@@ -226,7 +226,7 @@ def test_cameras_are_evenly_spaced_along_a_line() -> None:
         with pytest.raises(dartcast.InvalidArgument):
             dartcast.camera_path(tube(), wrong)
     with pytest.raises(dartcast.InvalidArgument, match="max_count|cameras"):
-        dartcast.camera_path(tube(), points, dartcast.CameraOptions(spacing=1e-4, max_count=10))
+        dartcast.camera_path(tube(), points, dartcast.records.CameraOptions(spacing=1e-4, max_count=10))
 
 
 def test_segments_of_a_catheter_stay_out_of_walls() -> None:
@@ -252,7 +252,7 @@ def test_the_surface_of_a_body_stays_out_of_walls() -> None:
     particles = dartcast.sample_solid(barrel, dartcast.SamplingOptions(spacing=0.3)).points
     surface = dartcast.solid_of_surface(barrel)
     added = bodies.add(particles, dartcast.BodyOptions(mass=2.0, damping=10.0, surface=surface))
-    assert added.body == 0 and added.surface.refusal == dartcast.SolidRefusal.NONE
+    assert added.body == 0 and added.surface.refusal == dartcast.records.SolidRefusal.NONE
     contacts = 0
     for _ in range(60):
         assert bodies.move_with(environment.positions) == 1.0

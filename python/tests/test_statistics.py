@@ -34,7 +34,7 @@ def test_residence_times_are_those_to_the_wall() -> None:
     escaped, absorbed = left[patch_number(simulation, "xmax")].escaped, left[patch_number(simulation, "xmin")].absorbed
     assert escaped.count == 3 and escaped.sum == pytest.approx(6.75) and escaped.mean() == pytest.approx(2.25)
     assert escaped.least == pytest.approx(0.75) and escaped.most == pytest.approx(3.5)
-    assert sum(escaped.bins) == 3 and len(escaped.bins) == dartcast.ResidenceTimes.BIN_COUNT
+    assert sum(escaped.bins) == 3 and len(escaped.bins) == dartcast.records.ResidenceTimes.BIN_COUNT
     for seconds in (0.75, 2.5, 3.5):
         assert escaped.bins[int(seconds / escaped.bin)] >= 1
     assert absorbed.count == 1 and absorbed.sum == pytest.approx(0.75)
@@ -89,16 +89,16 @@ def test_written_hits_are_those_counted(tmp_path: pathlib.Path) -> None:
     by_patch = hits.by_patch(simulation.environment)
     assert by_patch[xmax] == by_patch[xmin] == 4 and by_patch.sum() == 8
     file = tmp_path / "hits.vtp"
-    dartcast.write_wall_hits(simulation.environment, hits, file)
+    dartcast.formats.write_wall_hits(simulation.environment, hits, file)
     written = arrays_of(file)
     assert len(written["hits"]) == 18 and written["hits"].sum() == 8  # 2 ends, 4 sides of 4 cells
     assert {patch: written["hits"][written["patch"] == patch].sum() for patch in (xmin, xmax)} == {xmin: 4, xmax: 4}
     assert np.array_equal(written["hits_per_area"], written["hits"].astype(float))  # each face has 1 m^2
     assert sorted(written["cell"][written["hits"] > 0].tolist()) == [0, 3]
     with pytest.raises(dartcast.InvalidArgument, match=r"\.vtp"):
-        dartcast.write_wall_hits(simulation.environment, hits, tmp_path / "hits.vtu")
+        dartcast.formats.write_wall_hits(simulation.environment, hits, tmp_path / "hits.vtu")
     with pytest.raises(dartcast.Error):
-        dartcast.write_wall_hits(simulation.environment, hits, tmp_path / "none" / "hits.vtp")
+        dartcast.formats.write_wall_hits(simulation.environment, hits, tmp_path / "none" / "hits.vtp")
 
 
 def test_hits_follow_an_edit_and_are_restored() -> None:
@@ -109,7 +109,7 @@ def test_hits_follow_an_edit_and_are_restored() -> None:
         simulation.step()
     cell = int(simulation.statistics.hits.faces()["cell"][-1])
     before = simulation.statistics.hits.by_patch(simulation.environment)
-    simulation.edit(lambda edit: dartcast.subdivide(edit, cell))
+    simulation.edit(lambda edit: dartcast.topology.subdivide(edit, cell))
     hits = simulation.statistics.hits
     assert np.array_equal(hits.by_patch(simulation.environment), before)
     assert hits.ended_by_patch().sum() + hits.faces()["hits"].sum() == before.sum() == 2
@@ -130,7 +130,7 @@ def test_pathlines_have_contacts_and_are_written(tmp_path: pathlib.Path) -> None
     assert set(rows["id"].tolist()) == {1}
     assert np.allclose(rows["position"][:, 0], [3.75, 4.0, 3.75, 3.25]) and rows["contact"].tolist() == [0, 1, 0, 0]
     assert np.allclose(rows["time"], [0.0, 0.125, 0.25, 0.5])
-    dartcast.write_pathlines(rows, tmp_path / "way.vtp")
+    dartcast.formats.write_pathlines(rows, tmp_path / "way.vtp")
     written = arrays_of(tmp_path / "way.vtp")
     assert np.array_equal(written["Points"].reshape(-1, 3), rows["position"])
     assert np.array_equal(written["contact"], rows["contact"]) and np.array_equal(written["time"], rows["time"])
@@ -147,4 +147,4 @@ def test_options_out_of_range_are_refused() -> None:
             simulation.set_statistics(dartcast.StatisticsOptions(planes=planes))
     assert not simulation.statistics_options.any()
     with pytest.raises(dartcast.InvalidArgument):
-        dartcast.find_crossings([plane], np.zeros((3, 3)), np.zeros((2, 3)))
+        dartcast.records.find_crossings([plane], np.zeros((3, 3)), np.zeros((2, 3)))

@@ -27,9 +27,9 @@ def at(surface: dartcast.Surface, x: list[float]) -> dartcast.SurfacePlace:
 
 def test_a_flat_path_is_straight() -> None:
     surface = sheet()
-    place, trace = at(surface, [0.25, 0.5, 0.0]), dartcast.SurfaceTrace()
+    place, trace = at(surface, [0.25, 0.5, 0.0]), dartcast.topology.SurfaceTrace()
     step = dartcast.step(surface, place, [2.5, 0.125, 0.0], trace=trace)
-    assert step.end == dartcast.SurfaceEnd.ARRIVED and step.length == pytest.approx(np.hypot(2.5, 0.125))
+    assert step.end == dartcast.topology.SurfaceEnd.ARRIVED and step.length == pytest.approx(np.hypot(2.5, 0.125))
     assert np.allclose(surface.point(place), [2.75, 0.625, 0.0])
     assert not trace.contacts and len(trace.crossings) == step.crossings
     borders = [c for c in trace.crossings if c.dart is not None]  # without the diagonals of the squares
@@ -42,17 +42,17 @@ def test_a_path_goes_on_straight_over_a_fold() -> None:
     surface = fold()
     place = at(surface, [0.5, 0.25, 0.0])
     step = dartcast.step(surface, place, [1.0, 0.5, 0.0])
-    assert step.end == dartcast.SurfaceEnd.ARRIVED
+    assert step.end == dartcast.topology.SurfaceEnd.ARRIVED
     assert np.allclose(surface.point(place), [1.0, 0.75, 0.5])
     assert np.allclose(step.direction, np.array([0.0, 0.5, 1.0]) / np.hypot(1.0, 0.5))
 
 
 def test_a_contact_at_the_border_has_time_point_and_sides() -> None:
-    surface, trace = sheet(1), dartcast.SurfaceTrace()
+    surface, trace = sheet(1), dartcast.topology.SurfaceTrace()
     place = at(surface, [0.25, 0.5, 0.0])
     step = dartcast.step(surface, place, [1.5, 0.25, 0.0], trace=trace)
     contact, = trace.contacts
-    assert step.end == dartcast.SurfaceEnd.STOPPED and contact.kind == dartcast.Kind.EDGE
+    assert step.end == dartcast.topology.SurfaceEnd.STOPPED and contact.kind == dartcast.Kind.EDGE
     assert contact.time_of_impact == pytest.approx(0.5)
     assert np.allclose(contact.point, [1.0, 0.625, 0.0]) and np.allclose(contact.unused, [0.75, 0.125, 0.0])
     assert np.allclose(contact.normal, [-1.0, 0.0, 0.0])
@@ -114,16 +114,16 @@ def test_a_blocked_face_is_a_wall_and_holds() -> None:
     place, inside = at(surface, [0.5, 0.5, 0.0]), at(surface, [1.5, 0.5, 0.0])
     assert inside.triangle is not None
     surface.set_free(inside.triangle.cell, False)
-    assert dartcast.step(surface, place, [1.0, 0.0, 0.0]).end == dartcast.SurfaceEnd.STOPPED
+    assert dartcast.step(surface, place, [1.0, 0.0, 0.0]).end == dartcast.topology.SurfaceEnd.STOPPED
     assert surface.point(place)[0] == pytest.approx(1.0)
-    assert dartcast.step(surface, inside, [0.1, 0.0, 0.0]).end == dartcast.SurfaceEnd.HELD
+    assert dartcast.step(surface, inside, [0.1, 0.0, 0.0]).end == dartcast.topology.SurfaceEnd.HELD
 
 
 def test_a_limit_ends_a_step() -> None:
     surface = sheet()
     step = dartcast.step(surface, at(surface, [0.5, 0.25, 0.0]), [2.0, 0.0, 0.0],
                          options=dartcast.SurfaceOptions(max_crossings=2))
-    assert step.end == dartcast.SurfaceEnd.LIMIT and step.crossings == 2 and step.remaining[0] > 0.5
+    assert step.end == dartcast.topology.SurfaceEnd.LIMIT and step.crossings == 2 and step.remaining[0] > 0.5
 
 
 def test_places_follow_an_edit() -> None:
@@ -132,17 +132,17 @@ def test_places_follow_an_edit() -> None:
     places = dartcast.SurfaceLocator(surface).nearest(surface, xs)[0]
     cell = int(places["cell"][0])
     with dartcast.SurfaceEdit(surface) as edit:
-        middle = dartcast.split_edge(edit.topology, (cell, 0))
+        middle = dartcast.topology.split_edge(edit.topology, (cell, 0))
         assert np.isclose(edit.position(middle.vertex)[2], 0.0)
         a = next(dartcast.Dart(middle.cells[0], k) for k in range(5)
                  if edit.map.origin((middle.cells[0], k)) == middle.vertex)
         opposite = edit.map.phi1(edit.map.phi1(a))
-        assert len(dartcast.split_face(edit.topology, a, opposite)) == 2
+        assert len(dartcast.topology.split_face(edit.topology, a, opposite)) == 2
         report = edit.commit()
     assert report.gone and {g.source for g in report.gone} == {0}
     for i, x in enumerate(xs):
         old = dartcast.SurfacePlace((int(places["cell"][i]), int(places["simplex"][i])), places["weights"][i])
-        new = dartcast.followed(surface, report, old)
+        new = dartcast.topology.followed(surface, report, old)
         assert new is not None and np.allclose(surface.point(new), x)
     assert len(surface.positions) == 9
 
@@ -152,19 +152,19 @@ def test_places_of_a_removed_face_are_gone() -> None:
     place, other = at(surface, [0.5, 0.5, 0.0]), at(surface, [2.5, 0.5, 0.0])
     assert place.triangle is not None
     with dartcast.SurfaceEdit(surface) as edit:
-        dartcast.remove(edit.topology, place.triangle.cell)
+        dartcast.topology.remove(edit.topology, place.triangle.cell)
         report = edit.commit()
-    assert dartcast.followed(surface, report, place) is None
-    assert dartcast.followed(surface, report, other) == other
+    assert dartcast.topology.followed(surface, report, place) is None
+    assert dartcast.topology.followed(surface, report, other) == other
 
 
 def test_an_edit_without_a_commit_changes_nothing() -> None:
     surface = sheet()
     before, cells = surface.positions.copy(), surface.map.cells().tolist()
     with dartcast.SurfaceEdit(surface) as edit:
-        dartcast.split_edge(edit.topology, (cells[0], 0))
+        dartcast.topology.split_edge(edit.topology, (cells[0], 0))
     with pytest.raises(KeyError, match="mine"), dartcast.SurfaceEdit(surface) as edit:
-        dartcast.split_edge(edit.topology, (cells[0], 0))
+        dartcast.topology.split_edge(edit.topology, (cells[0], 0))
         raise KeyError("mine")
     assert np.array_equal(surface.positions, before) and surface.map.cells().tolist() == cells
 
@@ -181,10 +181,10 @@ def test_an_open_edit_locks_the_surface() -> None:
 
 def test_an_exception_in_a_response_leaves_the_places() -> None:
     surface = sheet(1)
-    places = dartcast.surface_places([at(surface, [0.5, 0.5, 0.0])] * 3)
+    places = dartcast.topology.surface_places([at(surface, [0.5, 0.5, 0.0])] * 3)
     saved = places.copy()
 
-    def respond(contact: dartcast.SurfaceContact) -> None:
+    def respond(contact: dartcast.topology.SurfaceContact) -> None:
         raise ArithmeticError("from the response")
 
     with pytest.raises(ArithmeticError, match="from the response"):
@@ -225,6 +225,6 @@ def test_tangents_turn_around_a_corner() -> None:
     surface = sheet(1)
     t = surface.triangles()[0]
     a, b, c = surface.corners(t)
-    assert np.allclose(dartcast.tangent(surface, t, 0, 0.0, np.linalg.norm(b - a)), b - a)
-    turned = dartcast.tangent(surface, t, 0, np.pi / 2)
+    assert np.allclose(dartcast.topology.tangent(surface, t, 0, 0.0, np.linalg.norm(b - a)), b - a)
+    turned = dartcast.topology.tangent(surface, t, 0, np.pi / 2)
     assert np.dot(turned, b - a) == pytest.approx(0.0, abs=1e-12) and np.dot(turned, c - a) > 0.0

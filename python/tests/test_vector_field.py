@@ -25,13 +25,13 @@ def test_a_linear_field_is_exact_between_points():
     assert np.allclose(at(field, env, x), x * [1, 2, 3])
     assert field.steady and field.frame == dartcast.FieldFrame.SPACE and field.place == dartcast.FieldPlace.POINTS
     assert np.allclose(field.values[:27], env.positions * [1, 2, 3]) and len(field.rest) == 0
-    assert not field.values.flags.writeable and dartcast.VelocityField is dartcast.VectorField
+    assert not field.values.flags.writeable and dartcast.records.VelocityField is dartcast.VectorField
 
 
 def test_a_field_of_cells_is_constant_in_each():
     env = scene()
     values = np.arange(3.0 * 48).reshape(-1, 3)
-    samples = dartcast.field_samples([0.0], [values], dartcast.FieldPlace.CELLS)
+    samples = dartcast.records.field_samples([0.0], [values], dartcast.FieldPlace.CELLS)
     field = dartcast.VectorField(env.complex, samples)
     x = np.array([0.21, 0.34, 0.83])
     cell = env.locate(x).simplex.cell
@@ -73,7 +73,7 @@ def test_a_field_follows_edits():
     env = scene()
     field = dartcast.VectorField(env.complex, env.positions.copy())
     cell = env.locate([0.21, 0.34, 0.83]).simplex.cell
-    report = env.edit(lambda e: dartcast.split_edge(e.topology, (cell, 0)))
+    report = env.edit(lambda e: dartcast.topology.split_edge(e.topology, (cell, 0)))
     with pytest.raises(dartcast.InvalidArgument, match="missed an edit"):
         at(field, env, np.array([0.21, 0.34, 0.83]))
     field.update_after_edit(report, env.complex)
@@ -93,14 +93,14 @@ def test_what_does_not_fit_is_refused():
     with pytest.raises(dartcast.InvalidArgument):
         dartcast.VectorField(env.complex, np.full((27, 3), np.nan))
     with pytest.raises(dartcast.InvalidArgument):
-        dartcast.field_samples([0.0, 1.0], [np.zeros((27, 3))])
+        dartcast.records.field_samples([0.0, 1.0], [np.zeros((27, 3))])
     with pytest.raises(dartcast.InvalidArgument):
         dartcast.VectorField(env.complex, dartcast.FieldSamples())
-    longer = dartcast.field_samples([0.0, 1.0], [np.zeros((27, 3))] * 2)
+    longer = dartcast.records.field_samples([0.0, 1.0], [np.zeros((27, 3))] * 2)
     longer.times = [0.0, 1.0, 2.0]
     with pytest.raises(IndexError):
         dartcast.VectorField(env.complex, longer).set_times([1.5], env.complex)
-    bad = dartcast.ComplexEditReport(placed=[dartcast.PlacedVertex(3, np.array([999]), [1.0])])
+    bad = dartcast.topology.ComplexEditReport(placed=[dartcast.topology.PlacedVertex(3, np.array([999]), [1.0])])
     with pytest.raises(dartcast.InvalidArgument, match="edit"):
         field.update_after_edit(bad, env.complex)
 

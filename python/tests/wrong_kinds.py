@@ -54,7 +54,8 @@ def pools(random: np.random.Generator, objects: dict[str, object]) -> Values:
 
 
 ALIASES = {"NDArray": "Array", "ndarray": "Array", "ArrayLike": "Array", "FloatArray": "Array", "Ids": "Array", "Cell": "int",
-           "Vertex": "int", "Patch": "int", "PathLike": "Path", "Iterable": "Sequence", "list": "Sequence", "tuple": "Sequence"}
+           "Vertex": "int", "Patch": "int", "PathLike": "Path", "Iterable": "Sequence", "list": "Sequence", "tuple": "Sequence",
+           "_Wholes": "Sequence", "_Numbers": "Sequence", "_Pair": "Sequence", "Floats": "Array", "Records": "Array"}
 
 
 def words(annotation: ast.expr | None) -> list[str]:
@@ -82,7 +83,7 @@ class Caller:
     def made(self, cls: str) -> list[Any]:
         """A record as it is when it is made without arguments."""
         try:
-            return [getattr(dc, cls)()]
+            return [getattr(dc._core, cls)()]
         except (AttributeError, *EXPECTED):
             return []
 
@@ -129,7 +130,7 @@ def owner(caller: Caller, name: str, where: object) -> object:
 
 def round_of_calls(caller: Caller, only: str) -> None:
     caller.refresh()
-    for name, where, node in functions(STUB.body, dc):
+    for name, where, node in functions(STUB.body, dc._core):
         if (only and name != only) or (node.name.startswith("_") and node.name != "__init__"):
             continue
         is_static = any(ast.unparse(mark) == "staticmethod" for mark in node.decorator_list)
@@ -156,7 +157,7 @@ def setters(caller: Caller) -> Iterator[tuple[str, object, str, ast.expr | None]
                 thing = owner(caller, above + node.name, where)
                 if thing is not None:
                     yield f"{above}{node.name}=", thing, node.name, node.args.args[1].annotation
-    yield from search(STUB.body, dc, "")
+    yield from search(STUB.body, dc._core, "")
 
 
 def main(rounds: int, seed: int, only: str) -> None:

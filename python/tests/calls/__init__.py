@@ -15,6 +15,7 @@ from collections.abc import Callable
 
 import dartcast as dc
 
+MODULES = (dc, dc.formats, dc.predicates, dc.records, dc.topology)
 Calls = dict[str, Callable[[], object]]
 
 #: Methods that Python itself gives a class.
@@ -57,13 +58,14 @@ def classes() -> dict[str, type]:
                     and not issubclass(value, (enum.Enum, BaseException, tuple, dc.Ranks)):
                 found[before + name] = value
                 search(value, before + name + ".")
-    search(dc, "")
+    for module in MODULES:
+        search(module, "")
     return found
 
 
 def names() -> set[str]:
     """Every function, constructor, method and property of the package."""
-    found = {name for name, value in vars(dc).items()
+    found = {name for module in MODULES for name, value in vars(module).items()
              if callable(value) and not isinstance(value, (type, types.ModuleType)) and not name.startswith("_")}
     for name, cls in classes().items():
         found.add(name)

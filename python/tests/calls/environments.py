@@ -73,8 +73,8 @@ def of_moves() -> Calls:
     }
 
 
-def fail(edit: dc.ComplexEdit) -> None:
-    dc.remove(edit.topology, first(edit.map))
+def fail(edit: dc.topology.ComplexEdit) -> None:
+    dc.topology.remove(edit.topology, first(edit.map))
     raise KeyError("out of the edit")
 
 
@@ -92,11 +92,11 @@ def of_edits() -> Calls:
             marked.update_after_edit(marking, "hold")
 
     def subdivide() -> None:
-        made: list[dc.Subdivision] = []
-        report = subdividing.edit(lambda edit: made.append(dc.subdivide(edit, first(edit.map)).subdivision))
-        dc.update_after_edit(subdividing.map, report.map.added, made[0])
+        made: list[dc.topology.Subdivision] = []
+        report = subdividing.edit(lambda edit: made.append(dc.topology.subdivide(edit, first(edit.map)).subdivision))
+        dc.topology.update_after_edit(subdividing.map, report.map.added, made[0])
         subdividing.update_after_edit(inside, "hold")
-        subdividing.edit(lambda edit: dc.coarsen(edit, made[0]))
+        subdividing.edit(lambda edit: dc.topology.coarsen(edit, made[0]))
         subdividing.update_after_edit(inside, "hold")
 
     def orphans() -> None:
@@ -110,7 +110,7 @@ def of_edits() -> Calls:
     return {
         "Environment.edit": mark, "Environment.edit: subdivide": subdivide,
         "Environment.edit: raised": refused(lambda: refusing.edit(fail)),
-        "Environment.edit: refused": refused(lambda: refusing.edit(lambda edit: dc.remove(edit.topology, 3))),
+        "Environment.edit: refused": refused(lambda: refusing.edit(lambda edit: dc.topology.remove(edit.topology, 3))),
         "Environment.edit: no function": refused(lambda: refusing.edit(3)),
         "Environment.update_after_edit": orphans,
         "Environment.update_after_edit: nothing": lambda: env.update_after_edit(particles),
@@ -137,7 +137,7 @@ def answers() -> dict[str, dict[str, object]]:
                      dc.WallResponse("slide"), dc.WallResponses(dc.Slide())):
         table[repr(response)] = {"respond": response} | by_library
     table["by patch"] = {"respond": {None: dc.Reflect(0.9), "xmin": dc.Slide()}} | by_library
-    table["acceleration"] = {"respond": dc.Reflect(), "acceleration": dc.Acceleration([0, 0, -1.0], 0.3)} | by_library
+    table["acceleration"] = {"respond": dc.Reflect(), "acceleration": dc.records.Acceleration([0, 0, -1.0], 0.3)} | by_library
     return table
 
 
@@ -176,7 +176,7 @@ def of_steps() -> Calls:
 
 
 def of_shared() -> Calls:
-    part = dc.box_part(dc.BoxOptions(cells=[3, 3, 3]), 1, 0)
+    part = dc.formats.box_part(dc.BoxOptions(cells=[3, 3, 3]), 1, 0)
     env = dc.SharedEnvironment(part, OneRank(), 1)
     particles = dc.SharedParticles(2)
     env.add(particles, np.full((5, 3), 0.4))
@@ -197,10 +197,10 @@ def of_shared() -> Calls:
         "SharedParticles.user_data: refused": refused(lambda: particles.user_data(99)),
         "SharedParticles.set_user_data": lambda: particles.set_user_data(1, [1.0, 2.0]),
         "SharedParticles.set_user_data: refused": refused(lambda: particles.set_user_data(1, [1.0])),
-        "SharedStep": lambda: dc.SharedStep(left=1),
+        "SharedStep": lambda: dc.records.SharedStep(left=1),
         "SharedEnvironment": lambda: dc.SharedEnvironment(part, OneRank(), threads=1),
         "SharedEnvironment: refused": refused(lambda: dc.SharedEnvironment(
-            dc.box_part(dc.BoxOptions(cells=[3, 3, 3]), 2, 0), OneRank())),
+            dc.formats.box_part(dc.BoxOptions(cells=[3, 3, 3]), 2, 0), OneRank())),
         "SharedEnvironment.whole": lambda: env.whole(int(particles.cells[0])),
         "SharedEnvironment.whole: refused": refused(lambda: env.whole(10**6)),
         "SharedEnvironment.add": add,

@@ -22,8 +22,8 @@ def of_deformations() -> Calls:
     steps = [dc.DeformationStep(kind="rotate", period=4.0), dc.DeformationStep(kind="twist", amplitude=0.2)]
     deformation = dc.Deformation(steps, REST)
     pull, out = np.zeros_like(REST), np.empty_like(REST)
-    placed = dc.PlacedVertex(20, np.array([0, 1]), [0.5, 0.5], [0, 0, 0])
-    report = dc.ComplexEditReport(placed=[placed])
+    placed = dc.topology.PlacedVertex(20, np.array([0, 1]), [0.5, 0.5], [0, 0, 0])
+    report = dc.topology.ComplexEditReport(placed=[placed])
     held = dc.Deformation([frames(frames=[REST, 3 * REST, REST])], REST)
     plane = dc.Deformation([], REST * [1.0, 1.0, 0.0])
     wrong = dc.Deformation([dc.DeformationStep(kind="twist", axis=[1.0, 0, 0])], REST * [1.0, 1.0, 0.0])
@@ -50,8 +50,8 @@ def of_deformations() -> Calls:
         "Deformation.positions: refused": refused(lambda: deformation.positions(0.3, out[1:].copy(), threads=1)),
         "Deformation.load_frames": read, "Deformation.load_frames: raised": refused(
             lambda: dc.Deformation([frames(raising)], REST).load_frames(0.5)),
-        "deformation_kind": lambda: dc.deformation_kind("bend"), "name_of": lambda: dc.name_of(dc.EventKind.CUT),
-        "name_of: deformation": lambda: dc.name_of(dc.DeformationKind.BEND),
+        "deformation_kind": lambda: dc.records.deformation_kind("bend"), "name_of": lambda: dc.formats.name_of(dc.records.EventKind.CUT),
+        "name_of: deformation": lambda: dc.formats.name_of(dc.DeformationKind.BEND),
     }
 
 
@@ -74,15 +74,15 @@ def of_fields() -> Calls:
     def follow() -> None:
         own = environment()
         own_field = dc.VectorField(own.complex, own.positions.copy())
-        report = own.edit(lambda edit: dc.split_edge(edit.topology, (first(edit.map), 0)))
+        report = own.edit(lambda edit: dc.topology.split_edge(edit.topology, (first(edit.map), 0)))
         own_field.update_after_edit(report, own.complex)
 
     mesh_field = dc.VectorField(turned.complex, turned.positions.copy(), dc.FieldFrame.MESH)
-    bad = dc.ComplexEditReport(placed=[dc.PlacedVertex(3, np.array([999]), [1.0])])
+    bad = dc.topology.ComplexEditReport(placed=[dc.topology.PlacedVertex(3, np.array([999]), [1.0])])
     return {
         "VectorField": lambda: dc.VectorField(env.complex, values[0]),
         "VectorField: mesh": lambda: dc.VectorField(env.complex, values[0], "mesh"),
-        "VectorField: cells": lambda: dc.VectorField(env.complex, dc.field_samples(
+        "VectorField: cells": lambda: dc.VectorField(env.complex, dc.records.field_samples(
             [0.0], [np.ones((env.map.cell_count(), 3))], "cells")),
         "VectorField: refused": refused(lambda: dc.VectorField(env.complex, values[0][1:].copy())),
         "VectorField.hold": read, "VectorField.set_times": read,
@@ -94,8 +94,8 @@ def of_fields() -> Calls:
         "VectorField.at: refused": refused(lambda: field.at(env.complex, simplex, w, corners, 2)),
         "VectorField.update_after_edit": follow,
         "VectorField.update_after_edit: refused": refused(lambda: field.update_after_edit(bad, env.complex)),
-        "field_samples": lambda: dc.field_samples([0.0, 1.0], values),
-        "field_samples: refused": refused(lambda: dc.field_samples([0.0], values)),
+        "field_samples": lambda: dc.records.field_samples([0.0, 1.0], values),
+        "field_samples: refused": refused(lambda: dc.records.field_samples([0.0], values)),
     }
 
 

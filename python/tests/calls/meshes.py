@@ -47,7 +47,7 @@ def of_data() -> Calls:
         "MeshData.__repr__": lambda: repr(mesh), "MeshData.__copy__": lambda: copy.copy(mesh),
         "MeshData.__deepcopy__": lambda: copy.deepcopy(mesh), "MeshData.__getstate__": lambda: pickle.dumps(mesh),
         "MeshData.__reduce__": lambda: mesh.__reduce__(), "MeshData.__setstate__": lambda: pickle.loads(pickle.dumps(mesh)),
-        "dimension": lambda: dc.dimension("prism"), "dimension: refused": refused(lambda: dc.dimension(8)),
+        "dimension": lambda: dc.formats.dimension("prism"), "dimension: refused": refused(lambda: dc.formats.dimension(8)),
     }
 
 
@@ -60,9 +60,9 @@ def of_checks() -> Calls:
         "check_and_repair": lambda: dc.check_and_repair(mesh),
         "check_and_repair: repair": lambda: dc.check_and_repair(copy.copy(inverted)),
         "check_and_repair: defects": lambda: dc.check_and_repair(copy.copy(flat)),
-        "Finding.add": lambda: dc.Finding("kind").add(3),
-        "verdict_name": lambda: dc.verdict_name("warn"),
-        "verdict_name: refused": refused(lambda: dc.verdict_name("no")),
+        "Finding.add": lambda: dc.formats.Finding("kind").add(3),
+        "verdict_name": lambda: dc.formats.verdict_name("warn"),
+        "verdict_name: refused": refused(lambda: dc.formats.verdict_name("no")),
         "MeshReport: of a mesh": lambda: (copy.copy(report), repr(report), report.valid, report.verdict),
     }
 
@@ -73,21 +73,21 @@ def of_selections() -> Calls:
     mesh.region_names = {2: "a lumen with a long name"}
     mesh.cell_data = {"kind": np.arange(27.0)}
     outer = np.array([[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]], dtype=float)
-    rings = [dc.Ring(outer, "rim"), dc.Ring(0.5 * outer + 1.0, "hole")]
+    rings = [dc.formats.Ring(outer, "rim"), dc.formats.Ring(0.5 * outer + 1.0, "hole")]
     rings[1].points = np.array([[1, 1, 0], [2, 1, 0], [2, 2, 0], [1, 2, 0]], dtype=float)
     return {
-        "cells_of_region": lambda: dc.cells_of_region(mesh, "a lumen with a long name"),
-        "cells_of_region: refused": refused(lambda: dc.cells_of_region(mesh, "tissue")),
-        "select_free_regions": lambda: dc.select_free_regions(mesh, ["a lumen with a long name"]),
-        "select_free_regions: refused": refused(lambda: dc.select_free_regions(mesh, ["tissue"])),
-        "select_free_values": lambda: dc.select_free_values(mesh, "kind", [1.0, 2.0]),
-        "select_free_values: refused": refused(lambda: dc.select_free_values(mesh, "sort", [1.0])),
-        "select_patches": lambda: dc.select_patches(copy.copy(mesh), ["xmin"]),
-        "select_patches: refused": refused(lambda: dc.select_patches(mesh, ["inlet"])),
-        "divide_walls": lambda: dc.divide_walls(copy.copy(mesh), 30.0),
-        "divide_walls: refused": refused(lambda: dc.divide_walls(dc.MeshData(POINTS, {"tetra": [[0, 2, 1, 3]]}), 30.0)),
-        "decompose": lambda: dc.decompose(rings), "decompose: refused": refused(lambda: dc.decompose([])),
-        "decompose: ring refused": refused(lambda: dc.decompose([dc.Ring(outer[[0, 2, 1, 3]].copy())])),
+        "cells_of_region": lambda: dc.formats.cells_of_region(mesh, "a lumen with a long name"),
+        "cells_of_region: refused": refused(lambda: dc.formats.cells_of_region(mesh, "tissue")),
+        "select_free_regions": lambda: dc.formats.select_free_regions(mesh, ["a lumen with a long name"]),
+        "select_free_regions: refused": refused(lambda: dc.formats.select_free_regions(mesh, ["tissue"])),
+        "select_free_values": lambda: dc.formats.select_free_values(mesh, "kind", [1.0, 2.0]),
+        "select_free_values: refused": refused(lambda: dc.formats.select_free_values(mesh, "sort", [1.0])),
+        "select_patches": lambda: dc.formats.select_patches(copy.copy(mesh), ["xmin"]),
+        "select_patches: refused": refused(lambda: dc.formats.select_patches(mesh, ["inlet"])),
+        "divide_walls": lambda: dc.formats.divide_walls(copy.copy(mesh), 30.0),
+        "divide_walls: refused": refused(lambda: dc.formats.divide_walls(dc.MeshData(POINTS, {"tetra": [[0, 2, 1, 3]]}), 30.0)),
+        "decompose": lambda: dc.formats.decompose(rings), "decompose: refused": refused(lambda: dc.formats.decompose([])),
+        "decompose: ring refused": refused(lambda: dc.formats.decompose([dc.formats.Ring(outer[[0, 2, 1, 3]].copy())])),
     }
 
 
@@ -98,7 +98,7 @@ def of_generators() -> Calls:
         "generate_box": lambda: dc.generate_box(options), "generate_box: by names": lambda: box(),
         "generate_box: refused": refused(lambda: dc.generate_box(cells=[0, 1, 1])),
         "generate_box: name refused": refused(lambda: dc.generate_box(cell=3)),
-        "generate_bar": dc.generate_bar, "bar_options": dc.bar_options,
+        "generate_bar": dc.generate_bar, "bar_options": dc.formats.bar_options,
         "generate_barrel": lambda: dc.generate_barrel(staves=8, rows=4, rings=2),
         "generate_maze": lambda: dc.generate_maze(rooms=[2, 2], obstacles=1),
         "generate_octahedra": lambda: dc.generate_octahedra(cells=[1, 1, 1]),
@@ -110,32 +110,32 @@ def of_generators() -> Calls:
 def of_files() -> Calls:
     mesh = box()
     table: Calls = {}
-    for ending in sorted(set(dc.mesh_endings()) & set(dc.writable_mesh_endings())):
+    for ending in sorted(set(dc.formats.mesh_endings()) & set(dc.formats.writable_mesh_endings())):
         path = FOLDER / ("box" + ending)
         dc.write_mesh(mesh, path)
         table[f"write_mesh: {ending}"] = lambda p=path: dc.write_mesh(mesh, p)
         table[f"read_mesh: {ending}"] = lambda p=path: dc.read_mesh(p)
     path, broken, surface = FOLDER / "box.msh", FOLDER / "broken.msh", FOLDER / "tetra.off"
-    dc.write_bytes(broken, BROKEN)
+    dc.formats.write_bytes(broken, BROKEN)
     surface.write_text("OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n", encoding="utf-8")
     file = dc.read_mesh(path)
-    surfaces = dc.SurfaceScene(surfaces=[dc.NamedSurface(region="lumen", file=surface)])
+    surfaces = dc.formats.SurfaceScene(surfaces=[dc.formats.NamedSurface(region="lumen", file=surface)])
     return table | {
         "read_mesh: defects": lambda: dc.read_mesh(broken), "read_mesh: refused": refused(lambda: dc.read_mesh(3)),
         "read_mesh: little memory": lambda: dc.read_mesh(path, dc.ReadOptions(max_memory=1000)),
-        "read_valid_mesh": lambda: dc.read_valid_mesh(path),
-        "read_valid_mesh: refused": refused(lambda: dc.read_valid_mesh(broken)),
+        "read_valid_mesh": lambda: dc.formats.read_valid_mesh(path),
+        "read_valid_mesh: refused": refused(lambda: dc.formats.read_valid_mesh(broken)),
         "read_surface": lambda: dc.read_surface(surface),
         "read_surface: refused": refused(lambda: dc.read_surface(FOLDER / "missing.stl")),
-        "mesh_surfaces": lambda: dc.mesh_surfaces(surfaces),
-        "mesh_surfaces: refused": refused(lambda: dc.mesh_surfaces(dc.SurfaceScene(box=0.5))),
-        "check_surface": lambda: dc.check_surface(surface), "check_mesh": lambda: dc.check_mesh(path, threads=1),
+        "mesh_surfaces": lambda: dc.formats.mesh_surfaces(surfaces),
+        "mesh_surfaces: refused": refused(lambda: dc.formats.mesh_surfaces(dc.formats.SurfaceScene(box=0.5))),
+        "check_surface": lambda: dc.formats.check_surface(surface), "check_mesh": lambda: dc.check_mesh(path, threads=1),
         "write_mesh: refused": refused(lambda: dc.write_mesh(mesh, FOLDER / "box.xyz")),
-        "write_bytes": lambda: dc.write_bytes(FOLDER / "bytes", b"a few bytes"),
-        "write_bytes: refused": refused(lambda: dc.write_bytes(FOLDER / "none" / "bytes", b"")),
-        "is_surface_file": lambda: dc.is_surface_file("a.vtu"),
-        "mesh_endings": dc.mesh_endings, "surface_endings": dc.surface_endings,
-        "writable_mesh_endings": dc.writable_mesh_endings,
+        "write_bytes": lambda: dc.formats.write_bytes(FOLDER / "bytes", b"a few bytes"),
+        "write_bytes: refused": refused(lambda: dc.formats.write_bytes(FOLDER / "none" / "bytes", b"")),
+        "is_surface_file": lambda: dc.formats.is_surface_file("a.vtu"),
+        "mesh_endings": dc.formats.mesh_endings, "surface_endings": dc.formats.surface_endings,
+        "writable_mesh_endings": dc.formats.writable_mesh_endings,
         "MeshFile": lambda: dc.MeshFile(mesh, file.report), "MeshFile.__iter__": lambda: list(file),
         "MeshFile.__repr__": lambda: repr(file), "MeshFile: mesh alone": lambda: dc.read_mesh(path).mesh.points,
     }
@@ -153,27 +153,27 @@ def of_meshio() -> Calls:
 
 def of_parts() -> Calls:
     mesh = box(mixed=True)
-    owners = dc.partition(mesh, 3)
-    part = dc.mesh_part(mesh, owners, 3, 1)
+    owners = dc.formats.partition(mesh, 3)
+    part = dc.formats.mesh_part(mesh, owners, 3, 1)
     path = FOLDER / "pieces.pvtu"
-    dc.write_mesh_parts(mesh, 2, path)
-    plan = dc.plan_run(mesh, dc.PlanOptions(ranks=2, samples=1))
+    dc.formats.write_mesh_parts(mesh, 2, path)
+    plan = dc.formats.plan_run(mesh, dc.formats.PlanOptions(ranks=2, samples=1))
     return {
         "MeshPart.__repr__": lambda: repr(part),
-        "partition": lambda: dc.partition(mesh, 4), "partition: refused": refused(lambda: dc.partition(mesh, 0)),
-        "mesh_part": lambda: dc.mesh_part(mesh, owners, 3, 2),
-        "mesh_part: refused": refused(lambda: dc.mesh_part(mesh, owners[:4], 3, 2)),
-        "has_parts": lambda: dc.has_parts(dc.BoxOptions()),
-        "box_part": lambda: dc.box_part(dc.BoxOptions(cells=[4, 4, 4]), 3, 1),
-        "box_part: refused": refused(lambda: dc.box_part(dc.BoxOptions(mixed=True), 1, 0)),
-        "write_mesh_parts": lambda: dc.write_mesh_parts(mesh, 2, path),
-        "write_mesh_parts: refused": refused(lambda: dc.write_mesh_parts(mesh, 2, FOLDER / "pieces.vtu")),
-        "read_mesh_part": lambda: dc.read_mesh_part(path, 2, 1),
-        "read_mesh_part: refused": refused(lambda: dc.read_mesh_part(path, 3, 1)),
-        "plan_run": lambda: dc.plan_run(mesh, dc.PlanOptions(ranks=2, particles=20.0, samples=1)),
+        "partition": lambda: dc.formats.partition(mesh, 4), "partition: refused": refused(lambda: dc.formats.partition(mesh, 0)),
+        "mesh_part": lambda: dc.formats.mesh_part(mesh, owners, 3, 2),
+        "mesh_part: refused": refused(lambda: dc.formats.mesh_part(mesh, owners[:4], 3, 2)),
+        "has_parts": lambda: dc.formats.has_parts(dc.BoxOptions()),
+        "box_part": lambda: dc.formats.box_part(dc.BoxOptions(cells=[4, 4, 4]), 3, 1),
+        "box_part: refused": refused(lambda: dc.formats.box_part(dc.BoxOptions(mixed=True), 1, 0)),
+        "write_mesh_parts": lambda: dc.formats.write_mesh_parts(mesh, 2, path),
+        "write_mesh_parts: refused": refused(lambda: dc.formats.write_mesh_parts(mesh, 2, FOLDER / "pieces.vtu")),
+        "read_mesh_part": lambda: dc.formats.read_mesh_part(path, 2, 1),
+        "read_mesh_part: refused": refused(lambda: dc.formats.read_mesh_part(path, 3, 1)),
+        "plan_run": lambda: dc.formats.plan_run(mesh, dc.formats.PlanOptions(ranks=2, particles=20.0, samples=1)),
         "RunPlan.seconds": lambda: plan.seconds(),
         "RunPlan.efficiency": lambda: plan.efficiency(),
-        "plan_run: refused": refused(lambda: dc.plan_run(mesh, dc.PlanOptions(ranks=2, step=2.0))),
+        "plan_run: refused": refused(lambda: dc.formats.plan_run(mesh, dc.formats.PlanOptions(ranks=2, step=2.0))),
     }
 
 

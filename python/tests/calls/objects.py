@@ -24,8 +24,8 @@ def of_meshes() -> dict[str, object]:
 
 def of_edits() -> dict[str, object]:
     c = scenes.complex_of()
-    edit = dc.ComplexEdit(c)
-    made = dc.subdivide(edit, scenes.first(edit.map))
+    edit = dc.topology.ComplexEdit(c)
+    made = dc.topology.subdivide(edit, scenes.first(edit.map))
     surface = dc.Surface(dc.generate_barrel(staves=8, rows=4, rings=2))
     return {"ComplexEdit": edit, "Transaction": edit.topology, "Subdivided": made, "Subdivision": made.subdivision,
             "SurfaceEdit": dc.SurfaceEdit(surface),
@@ -34,7 +34,7 @@ def of_edits() -> dict[str, object]:
 
 def of_particles() -> dict[str, object]:
     env, particles = scenes.with_particles()
-    env.edit(lambda edit: dc.subdivide(edit, scenes.first(edit.map)))
+    env.edit(lambda edit: dc.topology.subdivide(edit, scenes.first(edit.map)))
     update = env.update_after_edit(particles)
     targets = particles.positions + 2.0
     spheres = particles.copy()
@@ -44,7 +44,7 @@ def of_particles() -> dict[str, object]:
     field = dc.VectorField(env.complex, env.positions.copy())
     return {"Environment": env, "Particles": particles, "UpdateReport": update, "Trace": trace, "StepReport": report,
             "SphereReport": overlapping, "VectorField": field, "Deformation": dc.Deformation([], env.positions),
-            "StateHash": dc.StateHash((1, 2)), "MeshFile": dc.MeshFile(scenes.box(), dc.MeshReport())}
+            "StateHash": dc.records.StateHash((1, 2)), "MeshFile": dc.MeshFile(scenes.box(), dc.formats.MeshReport())}
 
 
 def of_solids() -> dict[str, object]:
@@ -54,8 +54,8 @@ def of_solids() -> dict[str, object]:
     catheter = scenes.catheter(scenes.tube())
     surface = dc.Surface(dc.generate_barrel(staves=8, rows=4, rings=2))
     place = dc.SurfaceLocator(surface).nearest(surface, [0.3, 0.01, 0.02]).place
-    trace = dc.SurfaceTrace()
-    report = dc.advance(surface, dc.surface_places([place]), np.array([[0.0, 0.5, 0.1]]), threads=1)
+    trace = dc.topology.SurfaceTrace()
+    report = dc.advance(surface, dc.topology.surface_places([place]), np.array([[0.0, 0.5, 0.1]]), threads=1)
     dc.step(surface, place, [0.0, 0.5, 0.1], trace=trace)
     solids = dc.SolidSet(scenes.environment())
     rod = dc.solid_of_polyline(np.array([[0.4, 0.5, 0.5], [0.6, 0.5, 0.5]]))
@@ -78,7 +78,7 @@ def of_simulations() -> dict[str, object]:
 
 
 def of_parts() -> dict[str, object]:
-    part = dc.box_part(dc.BoxOptions(cells=[3, 3, 3]), 1, 0)
+    part = dc.formats.box_part(dc.BoxOptions(cells=[3, 3, 3]), 1, 0)
     environment = dc.SharedEnvironment(part, scenes.OneRank(), 1)
     particles = dc.SharedParticles(2)
     environment.add(particles, np.full((5, 3), 0.4))

@@ -41,25 +41,25 @@ def of_states() -> Calls:
     state = particles[0]
     corners = env.complex.corners(state.at())
     return {
-        "forecast": lambda: dc.forecast(m, state, corners),
-        "forecast: refused": refused(lambda: dc.forecast(m, dc.ParticleState(), corners)),
-        "placement": lambda: dc.placement(m, state.at(), corners, [0.5, 0.5, 0.5]),
-        "placement: refused": refused(lambda: dc.placement(m, (12345, 0), corners, [0, 0, 0])),
-        "ParticleState.at": state.at, "ParticleState.put": lambda: dc.ParticleState().put((3, 2), [1, 2, 3]),
+        "forecast": lambda: dc.topology.forecast(m, state, corners),
+        "forecast: refused": refused(lambda: dc.topology.forecast(m, dc.topology.ParticleState(), corners)),
+        "placement": lambda: dc.topology.placement(m, state.at(), corners, [0.5, 0.5, 0.5]),
+        "placement: refused": refused(lambda: dc.topology.placement(m, (12345, 0), corners, [0, 0, 0])),
+        "ParticleState.at": state.at, "ParticleState.put": lambda: dc.topology.ParticleState().put((3, 2), [1, 2, 3]),
         "StepOptions.check": dc.StepOptions().check,
         "StepOptions.check: refused": refused(dc.StepOptions(max_parts=0).check),
-        "check_threads": lambda: dc.check_threads(1),
-        "check_threads: refused": refused(lambda: dc.check_threads(10**6)),
-        "max_threads": dc.max_threads, "is_radius": lambda: dc.is_radius(1.0), "is_mass": lambda: dc.is_mass(1.0),
-        "RigidMover.velocity_at": lambda: dc.RigidMover(turns=True).velocity_at([2.0, 0, 0]),
-        "RigidMotion.velocity_at": lambda: dc.RigidMotion().velocity_at([2.0, 0, 0]),
+        "check_threads": lambda: dc.records.check_threads(1),
+        "check_threads: refused": refused(lambda: dc.records.check_threads(10**6)),
+        "max_threads": dc.max_threads, "is_radius": lambda: dc.predicates.is_radius(1.0), "is_mass": lambda: dc.predicates.is_mass(1.0),
+        "RigidMover.velocity_at": lambda: dc.predicates.RigidMover(turns=True).velocity_at([2.0, 0, 0]),
+        "RigidMotion.velocity_at": lambda: dc.records.RigidMotion().velocity_at([2.0, 0, 0]),
     }
 
 
 def of_audits() -> Calls:
     env, particles = with_particles()
     ids, v = np.arange(COUNT), np.zeros((COUNT, 3))
-    h, other = dc.StateHash((1, 2)), dc.StateHash((1, 2))
+    h, other = dc.records.StateHash((1, 2)), dc.records.StateHash((1, 2))
 
     def sum_of(a: object, b: object) -> None:
         a += b
@@ -67,14 +67,14 @@ def of_audits() -> Calls:
     return {
         "audit": lambda: dc.audit(env.complex, particles, threads=1),
         "audit: refused": refused(lambda: dc.audit(env.complex, particles, threads=10**6)),
-        "Audit.__iadd__": lambda: sum_of(dc.Audit(1, 1, "a long text on what is wrong"), dc.Audit(1, 1, "another")),
-        "Counters.__iadd__": lambda: sum_of(dc.Counters(particle_steps=2), dc.Counters()),
-        "CollisionCounts.__iadd__": lambda: sum_of(dc.CollisionCounts(), dc.CollisionCounts()),
-        "StateHash": dc.StateHash, "StateHash: words": lambda: dc.StateHash((1, 2)),
-        "StateHash.add": lambda: dc.StateHash().add(ids, particles, v),
-        "StateHash.add: one": lambda: dc.StateHash().add(3, particles[3], [0, 0, 0]),
+        "Audit.__iadd__": lambda: sum_of(dc.records.Audit(1, 1, "a long text on what is wrong"), dc.records.Audit(1, 1, "another")),
+        "Counters.__iadd__": lambda: sum_of(dc.records.Counters(particle_steps=2), dc.records.Counters()),
+        "CollisionCounts.__iadd__": lambda: sum_of(dc.predicates.CollisionCounts(), dc.predicates.CollisionCounts()),
+        "StateHash": dc.records.StateHash, "StateHash: words": lambda: dc.records.StateHash((1, 2)),
+        "StateHash.add": lambda: dc.records.StateHash().add(ids, particles, v),
+        "StateHash.add: one": lambda: dc.records.StateHash().add(3, particles[3], [0, 0, 0]),
         "StateHash.add: refused": refused(lambda: h.add(ids[1:], particles, v)),
-        "StateHash.__iadd__": lambda: sum_of(dc.StateHash(), h), "StateHash.__eq__": lambda: h == other,
+        "StateHash.__iadd__": lambda: sum_of(dc.records.StateHash(), h), "StateHash.__eq__": lambda: h == other,
         "StateHash.__copy__": lambda: copy.copy(h), "StateHash.hex": h.hex, "StateHash.__repr__": lambda: repr(h),
     }
 
@@ -85,7 +85,7 @@ def of_responses() -> Calls:
     report = env.advance(particles, particles.positions + 5.0, options=dc.StepOptions(max_contacts=1))
     walls = report.walls_of(0)
     responses = dc.WallResponses({None: dc.Slide(), "zmax": dc.Reflect(0.25)}, env.map)
-    contact = dc.SurfaceContact(normal=[0, 0, 1])
+    contact = dc.topology.SurfaceContact(normal=[0, 0, 1])
     return {
         "WallResponses": lambda: dc.WallResponses({None: dc.Slide(), "zmax": dc.Reflect(0.25)}, env.map),
         "WallResponses: refused": refused(lambda: dc.WallResponses({"zmax": dc.Slide()})),
@@ -93,8 +93,8 @@ def of_responses() -> Calls:
         "WallResponses.set: refused": refused(lambda: responses.set(1, 5)),
         "respond_with": lambda: dc.respond_with(dc.Stick(), v, statuses, 0.1),
         "respond_with: refused": refused(lambda: dc.respond_with(dc.Stick(), v, statuses, 0.0)),
-        "hold_stopped": lambda: dc.hold_stopped(report, dc.Reflect(), v, None, 0.1),
-        "hold_stopped: refused": refused(lambda: dc.hold_stopped(report, dc.Reflect(), v[1:], None, 0.1)),
+        "hold_stopped": lambda: dc.records.hold_stopped(report, dc.Reflect(), v, None, 0.1),
+        "hold_stopped: refused": refused(lambda: dc.records.hold_stopped(report, dc.Reflect(), v[1:], None, 0.1)),
         "reflected": lambda: dc.reflected([1, 0, 2], walls, 0.5, 0.1), "slid": lambda: dc.slid([1, 0, 2], walls, walls),
         "reflected: surface": lambda: dc.reflected(contact, [1, 0, 2], 0.5),
         "slid: surface": lambda: dc.slid(contact, [1, 0, 2]),
@@ -150,10 +150,10 @@ def of_trajectories() -> Calls:
     traces = plane.trace(particles, 0, np.array([[0.8, 0.85, 0.0], [1.4, 0.85, 0.0]]))
     trace = traces[1]
     return {
-        "trajectory_points": lambda: dc.trajectory_points(traces),
-        "trajectory_csv": lambda: dc.trajectory_csv(plane.map, traces),
-        "trajectory_svg": lambda: dc.trajectory_svg(plane.complex, traces),
-        "trajectory_svg: refused": refused(lambda: dc.trajectory_svg(plane.complex, [])),
+        "trajectory_points": lambda: dc.formats.trajectory_points(traces),
+        "trajectory_csv": lambda: dc.formats.trajectory_csv(plane.map, traces),
+        "trajectory_svg": lambda: dc.formats.trajectory_svg(plane.complex, traces),
+        "trajectory_svg: refused": refused(lambda: dc.formats.trajectory_svg(plane.complex, [])),
         "Trace.walls_of": lambda: trace.walls_of(0), "Trace.earlier_walls_of": lambda: trace.earlier_walls_of(0),
         "Trace.walls_of: refused": refused(lambda: trace.walls_of(99)),
     }

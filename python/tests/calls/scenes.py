@@ -18,8 +18,8 @@ def box(n: int = 3, **options: object) -> dc.MeshData:
     return dc.generate_box(cells=[n, n, n], **options)
 
 
-def complex_of(n: int = 2, **options: object) -> dc.CellComplex:
-    return dc.CellComplex(box(n, **options), threads=1)
+def complex_of(n: int = 2, **options: object) -> dc.topology.CellComplex:
+    return dc.topology.CellComplex(box(n, **options), threads=1)
 
 
 def environment(n: int = 3, **options: object) -> dc.Environment:
@@ -31,16 +31,16 @@ def with_particles(n: int = 3) -> tuple[dc.Environment, dc.Particles]:
     return env, env.add_random(COUNT, seed=5)
 
 
-def first(m: dc.CombinatorialMap) -> int:
+def first(m: dc.topology.CombinatorialMap) -> int:
     return int(m.cells()[0])
 
 
-def inner_face(m: dc.CombinatorialMap) -> tuple[int, int]:
+def inner_face(m: dc.topology.CombinatorialMap) -> tuple[int, int]:
     c = first(m)
     return c, next(f for f in range(m.shape(c).face_count) if m.opposite((c, f)) is not None)
 
 
-def outer_face(m: dc.CombinatorialMap) -> tuple[int, int]:
+def outer_face(m: dc.topology.CombinatorialMap) -> tuple[int, int]:
     c = first(m)
     return c, next(f for f in range(m.shape(c).face_count) if m.opposite((c, f)) is None)
 
@@ -76,10 +76,10 @@ def bodies(env: dc.Environment) -> dc.Bodies:
     return made
 
 
-def undone(c: dc.CellComplex, edit: Callable[[dc.ComplexEdit], object]) -> Callable[[], None]:
+def undone(c: dc.topology.CellComplex, edit: Callable[[dc.topology.ComplexEdit], object]) -> Callable[[], None]:
     """An edit that is not committed."""
     def call() -> None:
-        with dc.ComplexEdit(c) as open_edit:
+        with dc.topology.ComplexEdit(c) as open_edit:
             edit(open_edit)
     return call
 

@@ -46,10 +46,10 @@ def of_making() -> Calls:
 
 def of_adding() -> Calls:
     x = np.full((3, 3), 0.4)
-    catheter = dc.CatheterScene("tool", dc.CatheterOptions(length=0.02, spacing=2e-3, entry=[0.0, 0.0, 1e-3],
+    catheter = dc.formats.CatheterScene("tool", dc.CatheterOptions(length=0.02, spacing=2e-3, entry=[0.0, 0.0, 1e-3],
                                                            direction=[0.0, 0.0, 1.0]))
-    catheter.moves = [dc.CatheterScene.Move(until=1.0, push=1e-3)]
-    body = dc.BodyScene("stone", dc.generate_barrel(staves=6, rows=3, rings=1), scale=0.3, at=[0.5, 0.5, 0.5],
+    catheter.moves = [dc.formats.CatheterScene.Move(until=1.0, push=1e-3)]
+    body = dc.formats.BodyScene("stone", dc.generate_barrel(staves=6, rows=3, rings=1), scale=0.3, at=[0.5, 0.5, 0.5],
                         sampling=dc.SamplingOptions(spacing=0.1))
     own = simulation()
     inlet = own.environment.map.patch("xmin")
@@ -63,8 +63,8 @@ def of_adding() -> Calls:
         made.catheter_summaries()
 
     def add_solid() -> None:
-        line = dc.SolidScene("line", np.array([[0.4, 0.5, 0.5], [0.6, 0.5, 0.5]]))
-        line.moves = [dc.SolidScene.Move(until=1.0, velocity=[0.0, 0.0, 0.1])]
+        line = dc.formats.SolidScene("line", np.array([[0.4, 0.5, 0.5], [0.6, 0.5, 0.5]]))
+        line.moves = [dc.formats.SolidScene.Move(until=1.0, velocity=[0.0, 0.0, 0.1])]
         made = simulation()
         made.add(line)
         made.step()
@@ -133,10 +133,10 @@ def of_motion() -> Calls:
 
 def of_changes() -> Calls:
     own = simulation()
-    cut = dc.Cut(dc.plane_through([0.3, 0.3, 0.3], [0.0, 0.0, 1.0]), 0.05)
-    events = [dc.Event(0.0, cut), dc.Event(0.1, dc.Carve(dc.box_tool([0.1] * 3, [0.4] * 3), "open"), "absorb")]
-    tied = dc.Event(0.0, dc.Ligature(cut.surface, [0.3, 0.3, 0.3], dc.TyingOptions(0.2, 0.5), 0.3))
-    crowded = dc.AdaptiveSubdivisionScene(1, dc.AdaptiveSubdivisionOptions(max_particles=1, min_particles=0))
+    cut = dc.Cut(dc.topology.plane_through([0.3, 0.3, 0.3], [0.0, 0.0, 1.0]), 0.05)
+    events = [dc.Event(0.0, cut), dc.Event(0.1, dc.Carve(dc.topology.box_tool([0.1] * 3, [0.4] * 3), "open"), "absorb")]
+    tied = dc.Event(0.0, dc.Ligature(cut.surface, [0.3, 0.3, 0.3], dc.topology.TyingOptions(0.2, 0.5), 0.3))
+    crowded = dc.formats.AdaptiveSubdivisionScene(1, dc.records.AdaptiveSubdivisionOptions(max_particles=1, min_particles=0))
 
     def follow(s: dc.Simulation) -> None:
         s.set_after_edit(lambda env: env.map.cells())
@@ -155,16 +155,16 @@ def of_changes() -> Calls:
         "Simulation.set_after_edit: raised": lambda: raise_after_edit(simulation()),
         "Simulation.set_after_edit: refused": refused(lambda: own.set_after_edit(3)),
         "Simulation.set_events: refused": refused(lambda: own.set_events([dc.Event(-1.0, cut)])),
-        "Simulation.set_remeshing": changed(lambda s: s.set_remeshing(dc.RemeshScene(every=1))),
+        "Simulation.set_remeshing": changed(lambda s: s.set_remeshing(dc.formats.RemeshScene(every=1))),
         "Simulation.set_adaptive_subdivision": changed(lambda s: s.set_adaptive_subdivision(crowded)),
         "Simulation.adapt": changed(lambda s: (s.set_adaptive_subdivision(crowded), s.adapt())),
-        "Simulation.edit": changed(lambda s: s.edit(lambda edit: dc.subdivide(edit, first(edit.map)))),
+        "Simulation.edit": changed(lambda s: s.edit(lambda edit: dc.topology.subdivide(edit, first(edit.map)))),
         "Simulation.edit: raised": refused(lambda: own.edit(fail)),
         "Simulation.edit: refused": refused(lambda: own.edit(3)), "Simulation.repair": own.repair,
-        "apply": changed(lambda s: dc.apply(s, dc.Event(0.0, cut))),
-        "apply: ligature": changed(lambda s: dc.apply(s, tied)),
-        "apply: refused": refused(lambda: dc.apply(own, dc.Event(0.0, dc.Cut(dc.Plane([0, 0, 0]), 0.1)))),
-        "kind_of": lambda: dc.kind_of(events[0]),
+        "apply": changed(lambda s: dc.records.apply(s, dc.Event(0.0, cut))),
+        "apply: ligature": changed(lambda s: dc.records.apply(s, tied)),
+        "apply: refused": refused(lambda: dc.records.apply(own, dc.Event(0.0, dc.Cut(dc.Plane([0, 0, 0]), 0.1)))),
+        "kind_of": lambda: dc.records.kind_of(events[0]),
     }
 
 
@@ -209,15 +209,15 @@ def of_statistics() -> Calls:
     hits, points = own.statistics.hits, own.statistics.path_points
     faces, ended = hits.faces(), hits.ended_by_patch()
     edited = environment()
-    edited.edit(lambda edit: dc.subdivide(edit, first(edit.map)))
+    edited.edit(lambda edit: dc.topology.subdivide(edit, first(edit.map)))
     broken = faces.copy()
     broken["cell"] = 77
     return {
         "Simulation.set_statistics": changed(lambda s: s.set_statistics(options)),
         "Simulation.set_statistics: refused": refused(lambda: own.set_statistics(
             dc.StatisticsOptions(planes=[dc.SectionPlane("no name")]))),
-        "find_crossings": lambda: dc.find_crossings([plane], before, after, threads=1),
-        "find_crossings: refused": refused(lambda: dc.find_crossings([plane], before, after[1:], threads=1)),
+        "find_crossings": lambda: dc.records.find_crossings([plane], before, after, threads=1),
+        "find_crossings: refused": refused(lambda: dc.records.find_crossings([plane], before, after[1:], threads=1)),
         "WallHits": dc.WallHits, "WallHits.add": lambda: dc.WallHits().add(env, report),
         "WallHits.add: refused": refused(lambda: dc.WallHits().add(environment(1), report)),
         "WallHits.update_after_edit": lambda: dc.WallHits().update_after_edit(edited),
@@ -225,12 +225,12 @@ def of_statistics() -> Calls:
         "WallHits.ended_by_patch": hits.ended_by_patch, "WallHits.by_patch": lambda: hits.by_patch(env),
         "WallHits.restore": lambda: dc.WallHits().restore(env, faces, ended),
         "WallHits.restore: refused": refused(lambda: dc.WallHits().restore(env, broken, ended)),
-        "ResidenceTimes.mean": dc.ResidenceTimes().mean, "StatisticsOptions.any": options.any,
+        "ResidenceTimes.mean": dc.records.ResidenceTimes().mean, "StatisticsOptions.any": options.any,
         "StatisticsOptions.pathlines": options.pathlines,
-        "write_wall_hits": lambda: dc.write_wall_hits(env, hits, FOLDER / "hits.vtp"),
-        "write_wall_hits: refused": refused(lambda: dc.write_wall_hits(env, hits, FOLDER / "none" / "hits.vtp")),
-        "write_pathlines": lambda: dc.write_pathlines(points, FOLDER / "pathlines.vtp"),
-        "write_pathlines: refused": refused(lambda: dc.write_pathlines(faces, FOLDER / "pathlines.vtp")),
+        "write_wall_hits": lambda: dc.formats.write_wall_hits(env, hits, FOLDER / "hits.vtp"),
+        "write_wall_hits: refused": refused(lambda: dc.formats.write_wall_hits(env, hits, FOLDER / "none" / "hits.vtp")),
+        "write_pathlines": lambda: dc.formats.write_pathlines(points, FOLDER / "pathlines.vtp"),
+        "write_pathlines: refused": refused(lambda: dc.formats.write_pathlines(faces, FOLDER / "pathlines.vtp")),
     }
 
 
@@ -238,19 +238,19 @@ def of_scenes() -> Calls:
     text = dc.scene_text(SCENE)
     file = FOLDER / "scene.toml"
     file.write_text(text, encoding="utf-8")
-    scene = dc.parse_scene(text, file)
+    scene = dc.formats.parse_scene(text, file)
     return {
         "scene_text": lambda: dc.scene_text(SCENE),
         "scene_text: refused": refused(lambda: dc.scene_text({"a": object()})),
-        "parse_scene": lambda: dc.parse_scene(text, file),
-        "parse_scene: refused": refused(lambda: dc.parse_scene("seed = 'three'", file)),
-        "parse_scene: no TOML": refused(lambda: dc.parse_scene("[environment", file)),
-        "read_scene": lambda: dc.read_scene(file),
-        "read_scene: refused": refused(lambda: dc.read_scene(FOLDER / "none.toml")),
+        "parse_scene": lambda: dc.formats.parse_scene(text, file),
+        "parse_scene: refused": refused(lambda: dc.formats.parse_scene("seed = 'three'", file)),
+        "parse_scene: no TOML": refused(lambda: dc.formats.parse_scene("[environment", file)),
+        "read_scene": lambda: dc.formats.read_scene(file),
+        "read_scene: refused": refused(lambda: dc.formats.read_scene(FOLDER / "none.toml")),
         "load_scene": lambda: dc.load_scene(SCENE, threads=1),
         "load_scene: file": lambda: dc.load_scene(file, threads=1),
         "load_scene: refused": refused(lambda: dc.load_scene({"environment": {"sice": 3}}, threads=1)),
-        "load_scene_files": lambda: dc.load_scene_files(scene, threads=1),
+        "load_scene_files": lambda: dc.formats.load_scene_files(scene, threads=1),
     }
 
 
@@ -261,19 +261,19 @@ def of_runs() -> Calls:
     out = FOLDER / "out"
     shown = FOLDER / "shown"
     dc.run(SCENE, shown, threads=1)
-    few = dc.ReportOptions(particles=2, frames=2)
+    few = dc.formats.ReportOptions(particles=2, frames=2)
     return {
-        "write_lagrangian": refused(lambda: dc.write_lagrangian(shown, FOLDER / "none")),
-        "write_report": lambda: dc.write_report(shown, few),
-        "write_report: refused": refused(lambda: dc.write_report(FOLDER / "none")),
-        "report_file": lambda: dc.report_file(shown),
+        "write_lagrangian": refused(lambda: dc.formats.write_lagrangian(shown, FOLDER / "none")),
+        "write_report": lambda: dc.formats.write_report(shown, few),
+        "write_report: refused": refused(lambda: dc.formats.write_report(FOLDER / "none")),
+        "report_file": lambda: dc.formats.report_file(shown),
         "run_scene": lambda: dc.run_scene(scene, options), "run": lambda: dc.run(SCENE, threads=1, audit=True),
         "run: folder": lambda: dc.run(SCENE, out, threads=1),
         "run: cancelled": lambda: dc.run(SCENE, threads=1, progress=lambda done, all_: done < 2),
         "run: raised": refused(lambda: dc.run(SCENE, threads=1, progress=raising)),
         "run: refused": refused(lambda: dc.run(dc.Scene(), threads=1)),
-        "summary_json": lambda: dc.summary_json(summary), "summary_text": lambda: dc.summary_text(summary),
-        "histogram_text": lambda: dc.histogram_text(summary), "version": dc.version,
+        "summary_json": lambda: dc.formats.summary_json(summary), "summary_text": lambda: dc.formats.summary_text(summary),
+        "histogram_text": lambda: dc.formats.histogram_text(summary), "version": dc.version,
     }
 
 

@@ -21,7 +21,7 @@ def of_surfaces() -> Calls:
     locator = dc.SurfaceLocator(surface)
     x = np.array([[0.3, 0.01, 0.02], [0.0, 0.3, 0.1]])
     place = locator.nearest(surface, x[0]).place
-    places, t = dc.surface_places([place] * 5), place.triangle
+    places, t = dc.topology.surface_places([place] * 5), place.triangle
     rest, face = surface.positions.copy(), first(surface.map)
     table: Calls = {}
     for name in ("vertices", "corners", "normal"):
@@ -40,16 +40,16 @@ def of_surfaces() -> Calls:
         "Surface.point: refused": refused(lambda: surface.point(dc.SurfacePlace())),
         "Surface.place": lambda: surface.place(t, [0.2, 0.3, 0.5]),
         "Surface.place: refused": refused(lambda: surface.place((0xFFFFFF0, 0), [0.2, 0.3, 0.5])),
-        "surface_places": lambda: dc.surface_places([place, place]),
-        "surface_places: refused": refused(lambda: dc.surface_places([3])),
-        "nearest_in_triangle": lambda: dc.nearest_in_triangle(surface, t, x[0]),
-        "nearest_in_triangle: refused": refused(lambda: dc.nearest_in_triangle(surface, (0xFFFFFF0, 0), x[0])),
+        "surface_places": lambda: dc.topology.surface_places([place, place]),
+        "surface_places: refused": refused(lambda: dc.topology.surface_places([3])),
+        "nearest_in_triangle": lambda: dc.topology.nearest_in_triangle(surface, t, x[0]),
+        "nearest_in_triangle: refused": refused(lambda: dc.topology.nearest_in_triangle(surface, (0xFFFFFF0, 0), x[0])),
         "SurfaceLocator": lambda: dc.SurfaceLocator(surface),
         "SurfaceLocator.nearest": lambda: dc.SurfaceLocator(surface).nearest(surface, x[0]),
         "SurfaceLocator.nearest: many": lambda: dc.SurfaceLocator(surface).nearest(surface, x),
         "SurfaceLocator.nearest: refused": refused(lambda: locator.nearest(surface, x)),
-        "tangent": lambda: dc.tangent(surface, t, 0, 0.3),
-        "tangent: refused": refused(lambda: dc.tangent(surface, (0xFFFFFF0, 0), 0, 0.3)),
+        "tangent": lambda: dc.topology.tangent(surface, t, 0, 0.3),
+        "tangent: refused": refused(lambda: dc.topology.tangent(surface, (0xFFFFFF0, 0), 0, 0.3)),
     }
 
 
@@ -59,19 +59,19 @@ def of_surface_steps() -> Calls:
     place = dc.SurfaceLocator(surface).nearest(surface, [0.3, 0.01, 0.02]).place
     for c in surface.map.cells()[::3]:
         surface.set_free(int(c), bool(c == place.triangle.cell))
-    places, saved = dc.surface_places([place] * 5), dc.surface_places([place] * 5)
+    places, saved = dc.topology.surface_places([place] * 5), dc.topology.surface_places([place] * 5)
 
     def step(respond: object) -> None:
         for way in WAYS:
-            dc.step(surface, dc.SurfacePlace(place.triangle, place.weights), way, respond, trace=dc.SurfaceTrace())
+            dc.step(surface, dc.SurfacePlace(place.triangle, place.weights), way, respond, trace=dc.topology.SurfaceTrace())
 
     def advance(respond: object) -> None:
         places[:] = saved
         dc.advance(surface, places, WAYS, respond, threads=1)
 
-    table: Calls = {"SurfaceTrace": dc.SurfaceTrace}
+    table: Calls = {"SurfaceTrace": dc.topology.SurfaceTrace}
     for name, respond in {"none": None, "slide": lambda c: dc.slid(c, c.unused),
-                          "record": lambda c: dc.AfterSurfaceContact(dc.slid(c, c.unused), True)}.items():
+                          "record": lambda c: dc.topology.AfterSurfaceContact(dc.slid(c, c.unused), True)}.items():
         table[f"step: {name}"] = lambda r=respond: step(r)
         table[f"advance: {name}"] = lambda r=respond: advance(r)
     for name, respond in {"raised": raising, "wrong answer": lambda c: "text"}.items():
@@ -90,24 +90,24 @@ def of_surface_edits() -> Calls:
 
     def undone() -> None:
         with dc.SurfaceEdit(surface) as own:
-            v = dc.split_edge(own.topology, (first(own.map), 0)).vertex
+            v = dc.topology.split_edge(own.topology, (first(own.map), 0)).vertex
             own.place(v, own.position(v))
 
     def raised() -> None:
         with dc.SurfaceEdit(surface) as own:
-            dc.split_edge(own.topology, (first(own.map), 0))
+            dc.topology.split_edge(own.topology, (first(own.map), 0))
             raise KeyError("out of the edit")
 
     def committed() -> None:
         own = dc.Surface(barrel())
         place = dc.SurfaceLocator(own).nearest(own, x).place
         with dc.SurfaceEdit(own) as own_edit:
-            dc.split_edge(own_edit.topology, (place.triangle.cell, 0))
+            dc.topology.split_edge(own_edit.topology, (place.triangle.cell, 0))
             report = own_edit.commit()
-        dc.followed(own, report, place)
-        dc.followed(own, report, dc.surface_places([place]))
+        dc.topology.followed(own, report, place)
+        dc.topology.followed(own, report, dc.topology.surface_places([place]))
 
-    other = dc.SurfaceEditReport(map=dc.EditReport(added=[0xFFFFFF0]))
+    other = dc.topology.SurfaceEditReport(map=dc.topology.EditReport(added=[0xFFFFFF0]))
     return {
         "SurfaceEdit": lambda: dc.SurfaceEdit(surface), "SurfaceEdit.__enter__": undone, "SurfaceEdit.__exit__": undone,
         "SurfaceEdit: refused": refused(lambda: dc.SurfaceEdit(held)), "SurfaceEdit.__exit__: raised": refused(raised),
@@ -115,7 +115,7 @@ def of_surface_edits() -> Calls:
         "SurfaceEdit.position: refused": refused(lambda: edit.position(10**6)),
         "SurfaceEdit.place: refused": refused(lambda: edit.place(0, [np.nan, 0.0, 0.0])),
         "SurfaceEdit.commit": committed, "followed": committed,
-        "followed: refused": refused(lambda: dc.followed(surface, other, dc.SurfacePlace())),
+        "followed: refused": refused(lambda: dc.topology.followed(surface, other, dc.SurfacePlace())),
     }
 
 
@@ -136,7 +136,7 @@ def of_bodies() -> Calls:
     def edited() -> None:
         own_env = environment()
         own_bodies = bodies(own_env)
-        own_env.edit(lambda edit: dc.subdivide(edit, first(edit.map)))
+        own_env.edit(lambda edit: dc.topology.subdivide(edit, first(edit.map)))
         own_bodies.update_after_edit()
 
     def moved() -> None:
@@ -165,8 +165,8 @@ def of_samples() -> Calls:
     for name in ("sample_solid", "sample_surface", "sample_volume"):
         table[name] = lambda f=getattr(dc, name): f(mesh, options)
         table[f"{name}: refused"] = refused(lambda f=getattr(dc, name): f(mesh, dc.SamplingOptions(spacing=-1.0)))
-    table["overlapping_clusters"] = lambda: dc.overlapping_clusters(BODY, 0.2)
-    table["overlapping_clusters: refused"] = refused(lambda: dc.overlapping_clusters(BODY, -1.0))
+    table["overlapping_clusters"] = lambda: dc.records.overlapping_clusters(BODY, 0.2)
+    table["overlapping_clusters: refused"] = refused(lambda: dc.records.overlapping_clusters(BODY, -1.0))
     return table
 
 
@@ -183,7 +183,7 @@ def of_catheters() -> Calls:
     def edited() -> None:
         own_env = tube()
         own_catheter = catheter(own_env)
-        own_env.edit(lambda edit: dc.subdivide(edit, first(edit.map)))
+        own_env.edit(lambda edit: dc.topology.subdivide(edit, first(edit.map)))
         own_catheter.update_after_edit()
 
     def moved() -> None:
@@ -200,8 +200,8 @@ def of_catheters() -> Calls:
         "Catheter.move_with: refused": refused(lambda: own.move_with(np.zeros((2, 3)))),
         "Catheter.update_after_edit": edited, "Catheter.points": own.points, "Catheter.frames": own.frames,
         "Catheter.state_hash": own.state_hash,
-        "camera_path": lambda: dc.camera_path(env, points, dc.CameraOptions(spacing=1e-3)),
-        "camera_path: refused": refused(lambda: dc.camera_path(env, points, dc.CameraOptions(spacing=-1.0))),
+        "camera_path": lambda: dc.camera_path(env, points, dc.records.CameraOptions(spacing=1e-3)),
+        "camera_path: refused": refused(lambda: dc.camera_path(env, points, dc.records.CameraOptions(spacing=-1.0))),
     }
 
 
@@ -226,7 +226,7 @@ def of_solid_sets() -> Calls:
 
     def edited() -> None:
         own = solid_set(environment())
-        own.environment.edit(lambda edit: dc.subdivide(edit, first(edit.map)))
+        own.environment.edit(lambda edit: dc.topology.subdivide(edit, first(edit.map)))
         own.update_after_edit()
 
     def moved() -> None:

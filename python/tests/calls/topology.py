@@ -18,30 +18,30 @@ def of_predicates() -> Calls:
     a, b, c, d = X
     table: Calls = {}
     for name in ("orient3d", "orient3d_exact", "orient3d_value"):
-        table[name] = lambda f=getattr(dc, name): f(a, b, c, d)
-        table[f"{name}: one"] = lambda f=getattr(dc, name): f([0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1])
-        table[f"{name}: refused"] = refused(lambda f=getattr(dc, name): f(a, b, c[:3], d))
+        table[name] = lambda f=getattr(dc.predicates, name): f(a, b, c, d)
+        table[f"{name}: one"] = lambda f=getattr(dc.predicates, name): f([0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1])
+        table[f"{name}: refused"] = refused(lambda f=getattr(dc.predicates, name): f(a, b, c[:3], d))
     for name in ("orient2d", "orient2d_exact", "orient2d_value"):
-        table[name] = lambda f=getattr(dc, name): f(a, b, c)
-        table[f"{name}: one"] = lambda f=getattr(dc, name): f([0, 0, 0], [1, 0, 0], [0, 1, 0])
-        table[f"{name}: refused"] = refused(lambda f=getattr(dc, name): f(a, b.astype(np.float32), c))
-    line = dc.SymbolicPerturbation([0, 0, 0], X[0, :3].copy())
-    plane = dc.PlanarSymbolicPerturbation([0, 0, 0], np.zeros((0, 3)))
+        table[name] = lambda f=getattr(dc.predicates, name): f(a, b, c)
+        table[f"{name}: one"] = lambda f=getattr(dc.predicates, name): f([0, 0, 0], [1, 0, 0], [0, 1, 0])
+        table[f"{name}: refused"] = refused(lambda f=getattr(dc.predicates, name): f(a, b.astype(np.float32), c))
+    line = dc.predicates.SymbolicPerturbation([0, 0, 0], X[0, :3].copy())
+    plane = dc.predicates.PlanarSymbolicPerturbation([0, 0, 0], np.zeros((0, 3)))
     return table | {
-        "in_exact_range": lambda: dc.in_exact_range(a), "in_exact_range: one": lambda: dc.in_exact_range([0, 0, 0]),
-        "flushed": lambda: dc.flushed(a), "flushed: one": lambda: dc.flushed([1e-301, 0, 0]),
-        "are_extents": lambda: dc.are_extents([1, 1, 1], 2.0), "bound_holds": lambda: dc.bound_holds([1, 1, 1]),
-        "filter_applies": lambda: dc.filter_applies([1, 1, 1]),
-        "are_plane_extents": lambda: dc.are_plane_extents(1, 1, 2),
-        "plane_bound_holds": lambda: dc.plane_bound_holds(1, 1),
-        "plane_filter_applies": lambda: dc.plane_filter_applies(1, 1),
-        "extent_of": lambda: dc.extent_of(a), "extent_of: refused": refused(lambda: dc.extent_of(np.zeros((0, 3)))),
-        "rounds_nothing": lambda: dc.rounds_nothing([4, 4, 4], a),
-        "SymbolicPerturbation": lambda: dc.SymbolicPerturbation([0, 0, 0], X[0, :3].copy()),
-        "SymbolicPerturbation: refused": refused(lambda: dc.SymbolicPerturbation([0, 0, 0], a)),
+        "in_exact_range": lambda: dc.predicates.in_exact_range(a), "in_exact_range: one": lambda: dc.predicates.in_exact_range([0, 0, 0]),
+        "flushed": lambda: dc.predicates.flushed(a), "flushed: one": lambda: dc.predicates.flushed([1e-301, 0, 0]),
+        "are_extents": lambda: dc.predicates.are_extents([1, 1, 1], 2.0), "bound_holds": lambda: dc.predicates.bound_holds([1, 1, 1]),
+        "filter_applies": lambda: dc.predicates.filter_applies([1, 1, 1]),
+        "are_plane_extents": lambda: dc.predicates.are_plane_extents(1, 1, 2),
+        "plane_bound_holds": lambda: dc.predicates.plane_bound_holds(1, 1),
+        "plane_filter_applies": lambda: dc.predicates.plane_filter_applies(1, 1),
+        "extent_of": lambda: dc.predicates.extent_of(a), "extent_of: refused": refused(lambda: dc.predicates.extent_of(np.zeros((0, 3)))),
+        "rounds_nothing": lambda: dc.predicates.rounds_nothing([4, 4, 4], a),
+        "SymbolicPerturbation": lambda: dc.predicates.SymbolicPerturbation([0, 0, 0], X[0, :3].copy()),
+        "SymbolicPerturbation: refused": refused(lambda: dc.predicates.SymbolicPerturbation([0, 0, 0], a)),
         "SymbolicPerturbation.of_line": lambda: line.of_line([1, 0, 0], [2, 0, 0], [3, 1, 0]),
         "SymbolicPerturbation.of_line: refused": refused(lambda: line.of_line([np.nan] * 3, [2, 0, 0], [3, 1, 0])),
-        "PlanarSymbolicPerturbation": lambda: dc.PlanarSymbolicPerturbation([0, 0, 0], np.zeros((0, 3))),
+        "PlanarSymbolicPerturbation": lambda: dc.predicates.PlanarSymbolicPerturbation([0, 0, 0], np.zeros((0, 3))),
         "PlanarSymbolicPerturbation.of_line": lambda: plane.of_line([1, 0, 0]),
     }
 
@@ -50,7 +50,7 @@ def of_shapes() -> Calls:
     m = complex_of().map
     shape = m.shape(first(m))
     key = shape.key
-    table: Calls = {"Shape": lambda: dc.Shape(key), "Shape: refused": refused(lambda: dc.Shape(dc.ShapeKey()))}
+    table: Calls = {"Shape": lambda: dc.topology.Shape(key), "Shape: refused": refused(lambda: dc.topology.Shape(dc.topology.ShapeKey()))}
     for name in ("origin", "face_of", "phi1", "phi_1", "phi2", "first_dart", "degree", "corners", "triangle_count",
                  "face_of_point"):
         table[f"Shape.{name}"] = lambda f=getattr(shape, name): f(1)
@@ -65,7 +65,7 @@ def of_shapes() -> Calls:
 
 def of_maps() -> Calls:
     mesh = box(2)
-    m = dc.CombinatorialMap(mesh)
+    m = dc.topology.CombinatorialMap(mesh)
     other = copy.copy(m)
     cells, c = m.cells(), first(m)
     view = m.view(c)
@@ -81,11 +81,11 @@ def of_maps() -> Calls:
         table[f"CombinatorialMap.{name}: many"] = lambda f=getattr(m, name): f(cells)
         table[f"CombinatorialMap.{name}: many refused"] = refused(lambda f=getattr(m, name): f(cells + 1000))
     return table | {
-        "CombinatorialMap": lambda: dc.CombinatorialMap(mesh),
-        "CombinatorialMap: refused": refused(lambda: dc.CombinatorialMap(dc.MeshData())),
+        "CombinatorialMap": lambda: dc.topology.CombinatorialMap(mesh),
+        "CombinatorialMap: refused": refused(lambda: dc.topology.CombinatorialMap(dc.MeshData())),
         "CombinatorialMap.patch: name": lambda: m.patch("ymin"),
         "CombinatorialMap.patch: name refused": refused(lambda: m.patch("inlet")),
-        "CombinatorialMap.pool_of": lambda: dc.CombinatorialMap.pool_of("prism"),
+        "CombinatorialMap.pool_of": lambda: dc.topology.CombinatorialMap.pool_of("prism"),
         "CombinatorialMap.wall_face_count": m.wall_face_count, "CombinatorialMap.cells": m.cells,
         "CombinatorialMap.set_free": lambda: (m.set_free(c, False), m.set_free(c, True)),
         "CombinatorialMap.set_free: refused": refused(lambda: m.set_free(7, False)),
@@ -105,29 +105,29 @@ def of_maps() -> Calls:
 
 
 def of_orbits() -> Calls:
-    m = dc.CombinatorialMap(box(2))
+    m = dc.topology.CombinatorialMap(box(2))
     c = first(m)
-    draft = dc.draft_of(m, c)
+    draft = dc.topology.draft_of(m, c)
     table: Calls = {}
     for name in ("vertex_orbit", "edge_orbit", "face_orbit", "cell_orbit"):
-        table[name] = lambda f=getattr(dc, name): f(m, (c, 0))
-        table[f"{name}: refused"] = refused(lambda f=getattr(dc, name): f(m, (c, 60)))
+        table[name] = lambda f=getattr(dc.topology, name): f(m, (c, 0))
+        table[f"{name}: refused"] = refused(lambda f=getattr(dc.topology, name): f(m, (c, 60)))
     return table | {
-        "find_dart": lambda: dc.find_dart(m, c, 0, 1), "check_integrity": lambda: dc.check_integrity(m),
-        "check_integrity: refused": refused(lambda: dc.check_integrity(m, [7])),
-        "draft_of": lambda: dc.draft_of(m, c), "draft_of: refused": refused(lambda: dc.draft_of(m, 7)),
-        "form_of": lambda: dc.form_of(draft), "forms_of": lambda: dc.forms_of([draft, draft], 3),
+        "find_dart": lambda: dc.topology.find_dart(m, c, 0, 1), "check_integrity": lambda: dc.topology.check_integrity(m),
+        "check_integrity: refused": refused(lambda: dc.topology.check_integrity(m, [7])),
+        "draft_of": lambda: dc.topology.draft_of(m, c), "draft_of: refused": refused(lambda: dc.topology.draft_of(m, 7)),
+        "form_of": lambda: dc.topology.form_of(draft), "forms_of": lambda: dc.topology.forms_of([draft, draft], 3),
     }
 
 
-def split_quad(t: dc.Transaction) -> np.ndarray:
+def split_quad(t: dc.topology.Transaction) -> np.ndarray:
     """Splits an inner face of the first cell from corner to corner. Returns the cells on its sides."""
     c, f = inner_face(t.map)
     dart = t.map.shape(c).first_dart(f)
-    return dc.split_face(t, (c, dart), (c, dart + 2))
+    return dc.topology.split_face(t, (c, dart), (c, dart + 2))
 
 
-def split_hexahedron(t: dc.Transaction) -> np.ndarray:
+def split_hexahedron(t: dc.topology.Transaction) -> np.ndarray:
     """Splits a cube into two prisms."""
     for ends in ((0, 3), (4, 7)):
         c = first(t.map)
@@ -137,77 +137,77 @@ def split_hexahedron(t: dc.Transaction) -> np.ndarray:
             if set(ends) <= set(corners):
                 a, b = (dart + corners.index(v) for v in ends)
                 if abs(a - b) == 2:
-                    dc.split_face(t, (c, a), (c, b))
+                    dc.topology.split_face(t, (c, a), (c, b))
                     break
     c = first(t.map)
     loop = [0, 3, 7, 4]
-    return dc.split_cell(t, [dc.find_dart(t.map, c, a, b) for a, b in zip(loop, loop[1:] + loop[:1])])
+    return dc.topology.split_cell(t, [dc.topology.find_dart(t.map, c, a, b) for a, b in zip(loop, loop[1:] + loop[:1])])
 
 
-def merge_prisms(t: dc.Transaction) -> None:
+def merge_prisms(t: dc.topology.Transaction) -> None:
     one = int(split_hexahedron(t)[0])
     shared = next(f for f in range(5) if t.map.opposite((one, f)) is not None)
-    dc.merge_cells(t, (one, shared))
+    dc.topology.merge_cells(t, (one, shared))
 
 
-def merge_split_edge(t: dc.Transaction) -> None:
-    split = dc.split_edge(t, (first(t.map), 0))
+def merge_split_edge(t: dc.topology.Transaction) -> None:
+    split = dc.topology.split_edge(t, (first(t.map), 0))
     dart = next((int(c), k) for c in split.cells for k in range(t.map.shape(int(c)).dart_count)
                 if t.map.origin((int(c), k)) == split.vertex)
-    dc.merge_edges(t, dart)
+    dc.topology.merge_edges(t, dart)
 
 
-def replace_with_point(t: dc.Transaction) -> None:
+def replace_with_point(t: dc.topology.Transaction) -> None:
     c = first(t.map)
-    draft = dc.draft_of(t.map, c)
+    draft = dc.topology.draft_of(t.map, c)
     draft.point = t.add_vertex(0, 7)
     t.replace([c], [draft])
 
 
-def to_savepoint(t: dc.Transaction) -> None:
+def to_savepoint(t: dc.topology.Transaction) -> None:
     point = t.savepoint()
-    dc.remove(t, first(t.map))
+    dc.topology.remove(t, first(t.map))
     t.roll_back(point)
-    dc.remove(t, first(t.map))
+    dc.topology.remove(t, first(t.map))
     t.roll_back()
 
 
 def of_transactions() -> Calls:
-    m, cube, square = (dc.CombinatorialMap(mesh) for mesh in
+    m, cube, square = (dc.topology.CombinatorialMap(mesh) for mesh in
                        (box(2), box(1), dc.generate_rectangle(cells=[2, 2])))
-    marked = dc.Transaction(dc.CombinatorialMap(box(2)))
-    dc.split_edge(marked, (first(marked.map), 0))
+    marked = dc.topology.Transaction(dc.topology.CombinatorialMap(box(2)))
+    dc.topology.split_edge(marked, (first(marked.map), 0))
 
-    def undone(edit: Callable[[dc.Transaction], object], on: dc.CombinatorialMap = m) -> Callable[[], None]:
+    def undone(edit: Callable[[dc.topology.Transaction], object], on: dc.topology.CombinatorialMap = m) -> Callable[[], None]:
         def call() -> None:
-            with dc.Transaction(on) as t:
+            with dc.topology.Transaction(on) as t:
                 edit(t)
         return call
 
-    def refused_in(edit: Callable[[dc.Transaction], object]) -> Callable[[], None]:
+    def refused_in(edit: Callable[[dc.topology.Transaction], object]) -> Callable[[], None]:
         return undone(lambda t: refused(lambda: edit(t))())
 
     def commit() -> None:
-        with dc.Transaction(copy.copy(m)) as t:
-            dc.split_edge(t, (first(t.map), 0))
+        with dc.topology.Transaction(copy.copy(m)) as t:
+            dc.topology.split_edge(t, (first(t.map), 0))
             t.commit()
 
     def mark() -> None:
         for free in (False, True):
-            with dc.Transaction(m) as t:
+            with dc.topology.Transaction(m) as t:
                 t.set_free(first(t.map), free)
                 t.commit()
 
-    def open_wall(t: dc.Transaction) -> None:
-        dc.unsew(t, inner_face(t.map))
+    def open_wall(t: dc.topology.Transaction) -> None:
+        dc.topology.unsew(t, inner_face(t.map))
 
     return {
-        "Transaction": lambda: dc.Transaction(m),
-        "Transaction: refused": undone(lambda t: refused(lambda: dc.Transaction(m))()),
+        "Transaction": lambda: dc.topology.Transaction(m),
+        "Transaction: refused": undone(lambda t: refused(lambda: dc.topology.Transaction(m))()),
         "Transaction: in C++": undone(lambda t: [t.added(), t.removed(), t.marked(), t.merged()]),
         "Transaction.add_vertex": undone(replace_with_point), "Transaction.replace": undone(replace_with_point),
         "Transaction.add_vertex: refused": refused_in(lambda t: t.add_vertex(0, 4000000)),
-        "Transaction.replace: refused": refused_in(lambda t: t.replace([first(t.map)], [dc.CellDraft()])),
+        "Transaction.replace: refused": refused_in(lambda t: t.replace([first(t.map)], [dc.topology.CellDraft()])),
         "Transaction.set_free": undone(lambda t: t.set_free(first(t.map), False)), "Transaction.set_free: commit": mark,
         "Transaction.note_merged": undone(lambda t: t.note_merged(t.add_vertex(0, 1), 0)),
         "Transaction.savepoint": undone(to_savepoint), "Transaction.roll_back": undone(to_savepoint),
@@ -217,20 +217,20 @@ def of_transactions() -> Calls:
         "Transaction.created: refused": refused(lambda: marked.created(9)),
         "Transaction.__enter__": undone(lambda t: None), "Transaction.__exit__": undone(lambda t: None),
         "Transaction.__exit__: raised": refused(undone(lambda t: {}["no key"])),
-        "split_edge": undone(lambda t: dc.split_edge(t, (first(t.map), 0))),
-        "split_edge: refused": refused_in(lambda t: dc.split_edge(t, (first(t.map), 60))),
-        "split_face": undone(split_quad), "split_face: polygon": undone(lambda t: dc.split_face(
+        "split_edge": undone(lambda t: dc.topology.split_edge(t, (first(t.map), 0))),
+        "split_edge: refused": refused_in(lambda t: dc.topology.split_edge(t, (first(t.map), 60))),
+        "split_face": undone(split_quad), "split_face: polygon": undone(lambda t: dc.topology.split_face(
             t, (first(t.map), 0), (first(t.map), 2)), square),
-        "split_cell": undone(split_hexahedron, cube), "split_cell: refused": refused_in(lambda t: dc.split_cell(t, [])),
+        "split_cell": undone(split_hexahedron, cube), "split_cell: refused": refused_in(lambda t: dc.topology.split_cell(t, [])),
         "merge_cells": undone(merge_prisms, cube),
-        "merge_cells: refused": refused_in(lambda t: dc.merge_cells(t, outer_face(t.map))),
-        "merge_faces": undone(lambda t: dc.merge_faces(t, (first(t.map), 0)), cube),
+        "merge_cells: refused": refused_in(lambda t: dc.topology.merge_cells(t, outer_face(t.map))),
+        "merge_faces": undone(lambda t: dc.topology.merge_faces(t, (first(t.map), 0)), cube),
         "merge_edges": undone(merge_split_edge),
-        "merge_edges: refused": refused_in(lambda t: dc.merge_edges(t, (first(t.map), 0))),
-        "sew: refused": refused_in(lambda t: dc.sew(t, (first(t.map), 0), (first(t.map), 1))),
-        "unsew": undone(open_wall), "unsew: refused": refused_in(lambda t: dc.unsew(t, outer_face(t.map))),
-        "remove": undone(lambda t: dc.remove(t, first(t.map))),
-        "remove: refused": refused_in(lambda t: dc.remove(t, 7)),
+        "merge_edges: refused": refused_in(lambda t: dc.topology.merge_edges(t, (first(t.map), 0))),
+        "sew: refused": refused_in(lambda t: dc.topology.sew(t, (first(t.map), 0), (first(t.map), 1))),
+        "unsew": undone(open_wall), "unsew: refused": refused_in(lambda t: dc.topology.unsew(t, outer_face(t.map))),
+        "remove": undone(lambda t: dc.topology.remove(t, first(t.map))),
+        "remove: refused": refused_in(lambda t: dc.topology.remove(t, 7)),
     }
 
 
@@ -244,14 +244,14 @@ def of_complexes() -> Calls:
         table[f"CellComplex.{name}"] = lambda f=getattr(c, name): f(simplex)
         table[f"CellComplex.{name}: refused"] = refused(lambda f=getattr(c, name): f((simplex[0], 60)))
     return table | {
-        "CellComplex": lambda: dc.CellComplex(mesh, threads=1),
-        "CellComplex: refused": refused(lambda: dc.CellComplex(dc.MeshData())),
+        "CellComplex": lambda: dc.topology.CellComplex(mesh, threads=1),
+        "CellComplex: refused": refused(lambda: dc.topology.CellComplex(dc.MeshData())),
         "CellComplex.move": lambda: (moving.move(later), moving.move(rest)),
         "CellComplex.move: refused": refused(lambda: moving.move(rest[1:])),
         "CellComplex.before_move": c.before_move, "CellComplex.__copy__": lambda: copy.copy(c),
         "CellComplex.__deepcopy__": lambda: copy.deepcopy(c),
-        "to_mesh": lambda: dc.to_mesh(c), "to_mesh: vertices": lambda: dc.to_mesh(c, with_vertices=True),
-        "raised": lambda: dc.raised([[1, 2, 9], [3, 4, 9], [5, 7, 9], [0, 0, 0]]),
+        "to_mesh": lambda: dc.topology.to_mesh(c), "to_mesh: vertices": lambda: dc.topology.to_mesh(c, with_vertices=True),
+        "raised": lambda: dc.topology.raised([[1, 2, 9], [3, 4, 9], [5, 7, 9], [0, 0, 0]]),
     }
 
 
@@ -264,20 +264,20 @@ def of_validity() -> Calls:
     corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.25, 0.25, 1]], dtype=float)
     flat = corners * [1.0, 1.0, -3.0]
     return {
-        "check_cell": lambda: dc.check_cell(c.map, after, first(c.map)),
-        "check_cell: refused": refused(lambda: dc.check_cell(c.map, after, 12)),
-        "check_validity": lambda: dc.check_validity(c, threads=1),
-        "check_validity: invalid": lambda: dc.check_validity(bad, threads=1),
-        "check_validity: positions": lambda: dc.check_validity(c.map, after, threads=1),
-        "check_validity: refused": refused(lambda: dc.check_validity(c.map, after[1:], threads=1)),
-        "find_inversion": lambda: dc.find_inversion(corners, flat),
-        "find_inversion: refused": refused(lambda: dc.find_inversion(corners, flat, -1.0)),
-        "first_inversion": lambda: dc.first_inversion(bad, threads=1),
-        "first_inversion: none": lambda: dc.first_inversion(c, threads=1),
-        "first_inversion: positions": lambda: dc.first_inversion(c.map, before, after, threads=1),
-        "first_inversion: refused": refused(lambda: dc.first_inversion(c.map, before, after[1:], threads=1)),
-        "move_towards": lambda: dc.move_towards(c, before, after, 0.1, threads=1),
-        "move_towards: refused": refused(lambda: dc.move_towards(c, before, after, 2.0, threads=1)),
+        "check_cell": lambda: dc.predicates.check_cell(c.map, after, first(c.map)),
+        "check_cell: refused": refused(lambda: dc.predicates.check_cell(c.map, after, 12)),
+        "check_validity": lambda: dc.predicates.check_validity(c, threads=1),
+        "check_validity: invalid": lambda: dc.predicates.check_validity(bad, threads=1),
+        "check_validity: positions": lambda: dc.predicates.check_validity(c.map, after, threads=1),
+        "check_validity: refused": refused(lambda: dc.predicates.check_validity(c.map, after[1:], threads=1)),
+        "find_inversion": lambda: dc.predicates.find_inversion(corners, flat),
+        "find_inversion: refused": refused(lambda: dc.predicates.find_inversion(corners, flat, -1.0)),
+        "first_inversion": lambda: dc.predicates.first_inversion(bad, threads=1),
+        "first_inversion: none": lambda: dc.predicates.first_inversion(c, threads=1),
+        "first_inversion: positions": lambda: dc.predicates.first_inversion(c.map, before, after, threads=1),
+        "first_inversion: refused": refused(lambda: dc.predicates.first_inversion(c.map, before, after[1:], threads=1)),
+        "move_towards": lambda: dc.predicates.move_towards(c, before, after, 0.1, threads=1),
+        "move_towards: refused": refused(lambda: dc.predicates.move_towards(c, before, after, 2.0, threads=1)),
     }
 
 
