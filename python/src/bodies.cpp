@@ -41,7 +41,7 @@ bool is_finite_motion(const RigidMover& m) {
 
 void apply_impulse(Handle& self, std::size_t body, const RigidMover& solved) {
   if (!is_finite_motion(solved)) throw InvalidArgument("apply_impulse: the state has a number that is not finite");
-  self.change([&, own = solved](Bodies& bodies) {
+  change(self, [&, own = solved](Bodies& bodies) {
     expect(bodies, body);
     bodies.apply_impulse(body, own);
   });

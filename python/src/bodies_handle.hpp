@@ -22,19 +22,8 @@ struct SolidHandle {
   T* solid = nullptr;
 
   [[nodiscard]] Use use() const { return Use(*environment->usage, "the Environment of this object"); }
-  /// Calls f(object) while it is in use; to change it, without Python's lock, and where it is of no simulation.
-  template <class F>
-  auto call(const F& f) const {
-    const Use held = use();
-    return f(std::as_const(*solid));
-  }
-  template <class F>
-  auto change(const F& f) const {
-    const Use held = use();
-    T& object = changeable();
-    const pybind11::gil_scoped_release release;
-    return f(object);
-  }
+  [[nodiscard]] const T& object() const { return *solid; }
+  [[nodiscard]] T& target() const { return changeable(); }
   /// Throws InvalidArgument where it belongs to a simulation, which alone changes it.
   [[nodiscard]] T& changeable() const {
     if (!own) throw InvalidArgument("this object belongs to a simulation, which alone steps and changes it");

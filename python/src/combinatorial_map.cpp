@@ -164,7 +164,7 @@ void bind_cells(Class& c) {
   c.def("contains", calling<MapHandle>(static_cast<bool (Map::*)(CellHandle) const>(&Map::contains)), py::arg("h"));
   c.def(
       "contains",
-      [](const MapHandle& h, Cell cell) { return h.call([&](const Map& map) { return map.contains(cell); }); },
+      [](const MapHandle& h, Cell cell) { return read(h, [&](const Map& map) { return map.contains(cell); }); },
       py::arg("c"), "Whether there is such a cell. Of a CellHandle: whether it is still the same cell.");
   method(c, "handle", &Map::handle, "The handle of a cell. Raises InvalidArgument where there is no such cell.");
   def_of_cells<std::uint8_t>(c, "type", "The CellType of a cell.",
@@ -193,7 +193,7 @@ void bind_sizes(Class& c) {
       "cell_count",
       [](const MapHandle& h, std::optional<std::uint32_t> pool) {
         if (pool) expect_pool(*pool);
-        return h.call([&](const Map& map) { return pool ? map.cell_count(*pool) : map.cell_count(); });
+        return read(h, [&](const Map& map) { return pool ? map.cell_count(*pool) : map.cell_count(); });
       },
       py::arg("pool") = py::none(), "The number of cells, of all or of one pool.");
   const auto of_pool = [&c](const char* name, auto f) {
@@ -201,7 +201,7 @@ void bind_sizes(Class& c) {
         name,
         [f](const MapHandle& h, std::uint32_t pool) {
           expect_pool(pool);
-          return h.call([&](const Map& map) { return (map.*f)(pool); });
+          return read(h, [&](const Map& map) { return (map.*f)(pool); });
         },
         about(std::string("CombinatorialMap::") + name));
   };
@@ -210,7 +210,7 @@ void bind_sizes(Class& c) {
   property(c, "vertex_count", &Map::vertex_count);
   c.def(
       "is_vertex",
-      [](const MapHandle& h, Vertex v) { return h.call([&](const Map& map) { return map.is_vertex(v); }); },
+      [](const MapHandle& h, Vertex v) { return read(h, [&](const Map& map) { return map.is_vertex(v); }); },
       about("CombinatorialMap::is_vertex"));
   method(c, "may_touch_wall", &Map::may_touch_wall);
   property(c, "bytes", &Map::bytes, "Size in memory.");
@@ -218,9 +218,9 @@ void bind_sizes(Class& c) {
 
 // Two maps, or one map twice.
 bool are_equal(const MapHandle& a, const MapHandle& b) {
-  if (a.usage == b.usage) return read_long(a, [&](const Map& map) { return map == b.read(); });
+  if (a.usage == b.usage) return read_long(a, [&](const Map& map) { return map == b.object(); });
   const Use use(*b.usage, "the map");
-  const Map& other = b.read();
+  const Map& other = b.object();
   return read_long(a, [&](const Map& map) { return map == other; });
 }
 

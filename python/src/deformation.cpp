@@ -71,12 +71,12 @@ void bind(py::module_& m) {
   c.def("__copy__", copy);
   c.def("__deepcopy__", [copy](const DeformationHandle& h, const py::dict& /*memo*/) { return copy(h); });
   c.def(
-      "check_plane", [](DeformationHandle& h) { h.change([](Deformation& d) { d.check_plane(); }); },
+      "check_plane", [](DeformationHandle& h) { change(h, [](Deformation& d) { d.check_plane(); }); },
       doc("Deformation::check_plane"));
   c.def("update_after_edit", &update_after_edit, about("Deformation::update_after_edit"));
   method(c, "add_pull", &Deformation::add_pull);
   c.def(
-      "load_frames", [](DeformationHandle& h, double time) { h.change([&](Deformation& d) { d.load_frames(time); }); },
+      "load_frames", [](DeformationHandle& h, double time) { change(h, [&](Deformation& d) { d.load_frames(time); }); },
       about("Deformation::load_frames"));
   c.def("positions", &positions, py::arg("time"), py::arg("out") = py::none(), py::arg("threads") = Threads{},
         about("Deformation::positions", "out: float64 (size, 3), written in place and returned; None: a fresh array."));

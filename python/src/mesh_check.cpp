@@ -11,8 +11,6 @@ namespace dartcast::python::mesh_check {
 
 void bind(py::module_& m) {
   m.def(
-      "verdict_name", [](Verdict v) { return std::string(verdict_name(v)); }, about("verdict_name"));
-  m.def(
       "check_and_repair",
       [](MeshData& mesh) {
         const MeshUse use(mesh, true);

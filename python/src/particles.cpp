@@ -101,7 +101,7 @@ void bind_changes(Class& c) {
         if (&h == &by)
           throw InvalidArgument("replace: a set cannot replace its own particles: give one that was selected()");
         const Use other(*by.usage, "the other set of particles");
-        h.change([&](Particles& particles) { particles.replace(which, by.particles); });
+        change(h, [&](Particles& particles) { particles.replace(which, by.particles); });
       },
       about("Particles::replace"));
 }

@@ -23,12 +23,8 @@ struct EnvironmentOfRanks {
   mutable Usage usage;
 
   explicit EnvironmentOfRanks(const py::object& all) : ranks(all) {}
-  template <class F>
-  auto change(const F& f) {
-    const Use use(usage, the_environment);
-    const py::gil_scoped_release release;
-    return f(*environment);
-  }
+  [[nodiscard]] Use use() const { return Use(usage, the_environment); }
+  [[nodiscard]] SharedEnvironment& target() { return *environment; }
 };
 
 struct ParticlesOfRanks {
@@ -36,11 +32,8 @@ struct ParticlesOfRanks {
   mutable Usage usage;
 
   explicit ParticlesOfRanks(std::size_t width) : particles(width) {}
-  template <class F>
-  auto call(const F& f) const {
-    const Use use(usage, the_particles);
-    return f(particles);
-  }
+  [[nodiscard]] Use use() const { return Use(usage, the_particles); }
+  [[nodiscard]] const SharedParticles& object() const { return particles; }
 };
 
 using EnvironmentOf = py::class_<EnvironmentOfRanks, std::shared_ptr<EnvironmentOfRanks>>;
@@ -58,7 +51,7 @@ std::shared_ptr<EnvironmentOfRanks> make(const MeshPart& part, const Typed<"Rank
 template <class F>
 auto compute(EnvironmentOfRanks& e, ParticlesOfRanks& p, F&& f) {
   const Use use(p.usage, the_particles);
-  return e.change([&](SharedEnvironment& own) { return f(own, p.particles); });
+  return change(e, [&](SharedEnvironment& own) { return f(own, p.particles); });
 }
 
 py::array_t<std::uint8_t> places_array(const std::vector<Place>& places) {

@@ -53,14 +53,9 @@ std::shared_ptr<Handle> of_checkpoint(const Scene& scene, const SimulationCheckp
   return std::make_shared<Handle>(std::move(made));
 }
 
-template <class F>
-auto compute(const Handle& self, const F& f) {
-  return self.change(f);
-}
-
 SimulationEdit edit(Handle& self, const Typed<"Callable[[ComplexEdit], object]">& make, OrphanPolicy orphaned) {
   const auto callback = edit_callback(make);
-  return compute(self, [&](Simulation& s) { return s.edit(callback, orphaned); });
+  return change(self, [&](Simulation& s) { return s.edit(callback, orphaned); });
 }
 
 std::vector<double> optional_numbers(const py::object& given, const char* name) {
@@ -80,31 +75,31 @@ py::array add(Handle& self, const Typed<"Points">& positions, const Typed<"Vecto
   if (!is_array(velocity, 2) && single_radius) {
     const Vec3 v = vector(velocity, "velocity");
     const auto r = radius.cast<double>();
-    return rows_of(compute(self, [&](Simulation& s) { return s.add(x, v, r, data); }));
+    return rows_of(change(self, [&](Simulation& s) { return s.add(x, v, r, data); }));
   }
   const std::vector<Vec3> same(is_array(velocity, 2) ? 0 : x.size(),
                                is_array(velocity, 2) ? Vec3{} : vector(velocity, "velocity"));
   const std::vector<double> same_radius(single_radius ? x.size() : 0, single_radius ? radius.cast<double>() : 0.0);
   const std::span<const Vec3> v = is_array(velocity, 2) ? vectors(velocity, "velocity") : std::span<const Vec3>(same);
   const std::span<const double> r = single_radius ? std::span<const double>(same_radius) : numbers(radius, "radius");
-  return rows_of(compute(self, [&](Simulation& s) { return s.add(x, v, r, data); }));
+  return rows_of(change(self, [&](Simulation& s) { return s.add(x, v, r, data); }));
 }
 
 void add_random(Handle& self, std::size_t count, const Vec3& velocity, double radius,
                 const Typed<"Numbers[float64] | None">& user_data) {
   const std::vector<double> data = optional_numbers(user_data, "user_data");
-  compute(self, [&](Simulation& s) { s.add_random(count, velocity, radius, data); });
+  change(self, [&](Simulation& s) { s.add_random(count, velocity, radius, data); });
 }
 
 void add_inlet(Handle& self, Patch patch, double rate, const Vec3& velocity, double radius,
                const Typed<"Numbers[float64] | None">& user_data) {
   const std::vector<double> data = optional_numbers(user_data, "user_data");
-  compute(self, [&](Simulation& s) { s.add_inlet(patch, rate, velocity, radius, data); });
+  change(self, [&](Simulation& s) { s.add_inlet(patch, rate, velocity, radius, data); });
 }
 
 template <class T>
 void add_scene(Handle& self, const T& scene) {
-  compute(self, [own = scene](Simulation& s) { s.add(own); });
+  change(self, [own = scene](Simulation& s) { s.add(own); });
 }
 
 void bind_making(Class& simulation) {
@@ -150,14 +145,14 @@ void bind_motion(Class& simulation) {
           [](Handle& self, const DeformationHandle& deformation) {
             // The thread that reads frames for the former one may wait for Python's lock.
             const Use other(deformation.usage, "the deformation");
-            compute(self, [&](Simulation& s) { s.set_deformation(deformation.deformation); });
+            change(self, [&](Simulation& s) { s.set_deformation(deformation.deformation); });
           },
           about("Simulation::set_deformation"))
       .def(
           "pull",
           [](Handle& self, const Typed<"Points">& displacement, double duration) {
             const auto x = vectors(displacement, "displacement");
-            compute(self, [&](Simulation& s) { s.pull(x, duration); });
+            change(self, [&](Simulation& s) { s.pull(x, duration); });
           },
           about("Simulation::pull"));
   method(simulation, "set_statistics", &Simulation::set_statistics);
@@ -190,7 +185,7 @@ void bind_changes(Class& simulation) {
           "set_after_edit",
           [](Handle& self, const Typed<"Callable[[Environment], object] | None">& after_edit) {
             Simulation::AfterEdit callback = after_edit_callback(after_edit);
-            compute(self, [&](Simulation& s) { s.set_after_edit(std::move(callback)); });
+            change(self, [&](Simulation& s) { s.set_after_edit(std::move(callback)); });
           },
           about("Simulation::set_after_edit",
                 "The function gets the environment, and can read it until it returns. None: nothing is called."))

@@ -45,18 +45,8 @@ struct SimulationHandle {
 
   [[nodiscard]] Simulation& get() const { return owner->simulation(); }
   [[nodiscard]] Use use() const { return Use(*environment->usage, "the Simulation"); }
-  /// Calls f(simulation) while it is in use; to change it, without Python's lock.
-  template <class F>
-  auto change(const F& f) const {
-    const Use held = use();
-    const pybind11::gil_scoped_release release;
-    return f(get());
-  }
-  template <class F>
-  auto call(const F& f) const {
-    const Use held = use();
-    return f(std::as_const(get()));
-  }
+  [[nodiscard]] const Simulation& object() const { return get(); }
+  [[nodiscard]] Simulation& target() const { return get(); }
 };
 
 /// A function that gets the environment at the end of each edit, and can read it until it returns; nothing

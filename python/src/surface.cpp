@@ -33,7 +33,7 @@ std::shared_ptr<MapHandle> map_of(const std::shared_ptr<Handle>& self) {
 }
 
 void move(Handle& self, const Typed<"Points">& positions, Threads threads) {
-  const SurfaceUse use(self);
+  const Use use = self.use();
   const auto x = vectors(positions, "positions");
   const py::gil_scoped_release release;
   self.surface.move(x, threads);
@@ -44,7 +44,7 @@ void move(Handle& self, const Typed<"Points">& positions, Threads threads) {
 template <class F>
 auto of_triangle(const char* caller, F f) {
   return [caller, f](const Handle& self, SimplexId t) {
-    return self.call([&](const Surface& surface) {
+    return read(self, [&](const Surface& surface) {
       check_triangle(surface, t, caller);
       return std::invoke(f, surface, t);
     });
@@ -53,14 +53,14 @@ auto of_triangle(const char* caller, F f) {
 
 AcrossEdge across(const Handle& self, SimplexId t, unsigned edge) {
   if (edge > 2) throw InvalidArgument("across: edge " + std::to_string(edge) + ": a triangle has edges 0, 1 and 2");
-  return self.call([&](const Surface& surface) {
+  return read(self, [&](const Surface& surface) {
     check_triangle(surface, t, "across");
     return surface.across(t, edge);
   });
 }
 
 Typed<"bool or NDArray[bool]"> contains(Handle& self, const Typed<"SurfacePlace or Records">& place) {
-  const SurfaceUse use(self);
+  const Use use = self.use();
   if (!is_places(place)) return py::bool_(self.surface.contains(place.cast<const SurfacePlace&>()));
   const auto rows = place_rows(place, "place");
   py::array_t<bool> found(static_cast<py::ssize_t>(rows.size()));
@@ -70,7 +70,7 @@ Typed<"bool or NDArray[bool]"> contains(Handle& self, const Typed<"SurfacePlace 
 }
 
 py::array_t<double> point(Handle& self, const Typed<"SurfacePlace | Records">& place) {
-  const SurfaceUse use(self);
+  const Use use = self.use();
   if (!is_places(place)) {
     const auto& one = place.cast<const SurfacePlace&>();
     check_place(self.surface, one, "point");
@@ -94,7 +94,7 @@ void bind_class(py::module_& m) {
       .def("move", &move, about("Surface::move"))
       .def(
           "triangles",
-          [](const Handle& self) { return rows_of(self.call([](const Surface& s) { return s.triangles(); })); },
+          [](const Handle& self) { return rows_of(read(self, [](const Surface& s) { return s.triangles(); })); },
           about("Surface::triangles", "A structured array with the fields cell (uint32) and simplex (uint16)."))
       .def("vertices", of_triangle("vertices", &Surface::vertices), about("Surface::vertices"))
       .def("corners", of_triangle("corners", [](const Surface& s, SimplexId t) { return kept(s.corners(t)); }),

@@ -17,7 +17,7 @@ namespace {
 class SurfaceEditHandle {
  public:
   explicit SurfaceEditHandle(std::shared_ptr<SurfaceHandle> surface) : surface_(std::move(surface)) {
-    const SurfaceUse use(*surface_);
+    const Use use = surface_->use();
     edit_ = std::make_unique<SurfaceEdit>(surface_->surface);
     surface_->edited = true;
   }
@@ -98,7 +98,7 @@ void check_report(const Surface& surface, const SurfaceEditReport& report) {
 
 Typed<"SurfacePlace | None or Records"> follow(SurfaceHandle& surface, const SurfaceEditReport& report,
                                                const Typed<"SurfacePlace or Records">& place) {
-  const SurfaceUse use(surface);
+  const Use use = surface.use();
   check_report(surface.surface, report);
   if (!is_places(place)) return py::cast(followed(surface.surface, report, place.cast<const SurfacePlace&>()));
   std::vector<PlaceRow> rows;

@@ -22,7 +22,7 @@ struct LocatorHandle {
 };
 
 std::shared_ptr<LocatorHandle> make_locator(const std::shared_ptr<SurfaceHandle>& surface) {
-  const SurfaceUse use(*surface);
+  const Use use = surface->use();
   const py::gil_scoped_release release;
   return std::make_shared<LocatorHandle>(surface);
 }
@@ -30,7 +30,7 @@ std::shared_ptr<LocatorHandle> make_locator(const std::shared_ptr<SurfaceHandle>
 Typed<"SurfaceLocation or tuple[Records, Floats]"> nearest(const LocatorHandle& self,
                                                            const std::shared_ptr<SurfaceHandle>& surface,
                                                            const Typed<"Vector or Points">& x) {
-  const SurfaceUse use(*surface);
+  const Use use = surface->use();
   if (self.surface != surface || self.version != surface->version) {
     throw InvalidArgument(
         "nearest: the locator was made for another surface, or before a move or an edit of this one: make a new "
@@ -118,7 +118,7 @@ void bind(py::module_& m) {
   m.def(
       "nearest_in_triangle",
       [](SurfaceHandle& surface, SimplexId triangle, const Vec3& x) {
-        const SurfaceUse use(surface);
+        const Use use = surface.use();
         check_triangle(surface.surface, triangle, "nearest_in_triangle");
         return nearest_in_triangle(surface.surface, triangle, x);
       },

@@ -22,31 +22,13 @@ struct SurfaceHandle {
 
   explicit SurfaceHandle(MeshData mesh) : surface(std::move(mesh)) {}
 
-  /// Calls f(surface) while it is in use; to change it, without Python's lock. Throws InvalidArgument while an edit is open.
-  template <class F>
-  auto change(const F& f) {
-    const Use use(*usage, "the Surface");
+  /// Throws InvalidArgument while an edit is open.
+  [[nodiscard]] Use use() const {
     if (edited) throw InvalidArgument("an edit of this surface is open: end its `with` block first");
-    const pybind11::gil_scoped_release release;
-    return f(surface);
+    return Use(*usage, "the Surface");
   }
-  template <class F>
-  auto call(const F& f) const {
-    const Use use(*usage, "the Surface");
-    if (edited) throw InvalidArgument("an edit of this surface is open: end its `with` block first");
-    return f(surface);
-  }
-};
-
-/// Holds a surface for a call. Throws InvalidArgument while an edit is open.
-class SurfaceUse {
- public:
-  explicit SurfaceUse(SurfaceHandle& handle) : use_(*handle.usage, "the Surface") {
-    if (handle.edited) throw InvalidArgument("an edit of this surface is open: end its `with` block first");
-  }
-
- private:
-  Use use_;
+  [[nodiscard]] const Surface& object() const { return surface; }
+  [[nodiscard]] Surface& target() { return surface; }
 };
 
 using PlaceRow = SurfacePlaceRow;

@@ -45,7 +45,7 @@ SurfaceContactCallback callback(const py::object& respond) {
 SurfaceStep step_one(SurfaceHandle& surface, SurfacePlace& place, const Vec3& displacement,
                      const Typed<"SurfaceRespond | None">& respond, const SurfaceOptions& options, TraceLists* trace,
                      std::uint32_t particle) {
-  const SurfaceUse use(surface);
+  const Use use = surface.use();
   const SurfaceContactCallback answer = callback(respond);
   const SurfaceOptions own_options = options;
   SurfacePlace moved = place;
@@ -67,7 +67,7 @@ SurfaceStep step_one(SurfaceHandle& surface, SurfacePlace& place, const Vec3& di
 ReportArrays advance_many(SurfaceHandle& surface, const Typed<"Records">& places, const Typed<"Points">& displacements,
                           const Typed<"SurfaceRespond | None">& respond, const SurfaceOptions& options,
                           Threads threads) {
-  const SurfaceUse use(surface);
+  const Use use = surface.use();
   const std::span<PlaceRow> rows = writable_place_rows(places, "places");
   const std::span<const Vec3> ways = vectors(displacements, "displacements");
   const SurfaceContactCallback answer = callback(respond);
@@ -84,7 +84,7 @@ ReportArrays advance_many(SurfaceHandle& surface, const Typed<"Records">& places
 
 py::array_t<double> tangent_of(SurfaceHandle& surface, SimplexId triangle, unsigned corner, double angle,
                                double length) {
-  const SurfaceUse use(surface);
+  const Use use = surface.use();
   return array_of(tangent(surface.surface, triangle, corner, angle, length));
 }
 

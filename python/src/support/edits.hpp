@@ -33,29 +33,15 @@ struct TransactionHandle {
   [[nodiscard]] bool is_of_edit() const { return edit != nullptr || of_surface != nullptr; }
   /// As EditHandle::end().
   void end();
-  /// Calls f(transaction) while it is in use, without Python's lock.
-  template <class F>
-  auto change(const F& f) const {
-    const Use held(*usage, "the transaction");
-    Transaction& transaction = open();
-    const pybind11::gil_scoped_release release;
-    return f(transaction);
-  }
-  template <class F>
-  auto call(const F& f) const {
-    return change([&](Transaction& t) { return f(std::as_const(t)); });
-  }
+  [[nodiscard]] Use use() const { return Use(*usage, "the transaction"); }
+  [[nodiscard]] const Transaction& object() const { return open(); }
+  [[nodiscard]] Transaction& target() const { return open(); }
 };
 
 /// A number that names a savepoint (Savepoints::add).
 struct SavepointHandle {
   std::uint64_t number = 0;
 };
-
-template <class Handle, class Function>
-auto change(const Handle& handle, const Function& f) {
-  return handle.change(f);
-}
 
 /// The function for an edit of an environment or a simulation: make(edit) is called with Python's lock. The edit ends
 /// with it, and no other thread uses it then. `make` outlives the function.

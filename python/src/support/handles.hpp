@@ -2,6 +2,8 @@
 // mark of their use (in_use.hpp).
 #pragma once
 
+#include <pybind11/pybind11.h>
+
 #include <functional>
 #include <memory>
 #include <utility>
@@ -12,6 +14,31 @@
 #include "support/in_use.hpp"
 
 namespace dartcast::python {
+
+// Each handle has use(), the mark of its use for a call, and object(), or target(): the object to be changed.
+
+/// Calls f(object) on what a handle holds, while it is in use.
+template <class Handle, class F>
+auto read(const Handle& handle, const F& f) {
+  const Use held = handle.use();
+  return f(handle.object());
+}
+/// The same without Python's lock.
+template <class Handle, class F>
+auto read_long(const Handle& handle, const F& f) {
+  return read(handle, [&](const auto& object) {
+    const pybind11::gil_scoped_release release;
+    return f(object);
+  });
+}
+/// The same to change the object.
+template <class Handle, class F>
+auto change(Handle& handle, const F& f) {
+  const Use held = handle.use();
+  auto& object = handle.target();
+  const pybind11::gil_scoped_release release;
+  return f(object);
+}
 
 /// An environment: the caller's own, or that of a simulation, which nobody else may change.
 struct EnvironmentHandle {
@@ -30,12 +57,8 @@ struct EnvironmentHandle {
       throw InvalidArgument(std::string(call) + ": a next_points() block of this environment is open: leave it first");
   }
 
-  /// Calls f(environment) while it is in use.
-  template <class F>
-  auto call(const F& f) const {
-    const Use use(*usage, "the environment");
-    return f(std::as_const(*environment));
-  }
+  [[nodiscard]] Use use() const { return Use(*usage, "the environment"); }
+  [[nodiscard]] const Environment& object() const { return *environment; }
   /// To change it. Throws InvalidArgument where it is borrowed: `remedy` says what to call instead.
   Environment& changeable(const char* remedy) const {
     if (borrowed) throw InvalidArgument(std::string("this environment belongs to a simulation: ") + remedy);
@@ -48,18 +71,9 @@ struct ParticlesHandle {
   Particles particles;
   std::shared_ptr<Usage> usage = std::make_shared<Usage>();
 
-  /// Calls f(particles) while the set is in use; to change it, without Python's lock.
-  template <class F>
-  auto call(const F& f) const {
-    const Use use(*usage, "the set of particles");
-    return f(particles);
-  }
-  template <class F>
-  auto change(const F& f) {
-    const Use use(*usage, "the set of particles");
-    const pybind11::gil_scoped_release release;
-    return f(particles);
-  }
+  [[nodiscard]] Use use() const { return Use(*usage, "the set of particles"); }
+  [[nodiscard]] const Particles& object() const { return particles; }
+  [[nodiscard]] Particles& target() { return particles; }
 };
 
 /// A complex of its own, or that of an environment, which only the environment may change.
@@ -69,12 +83,8 @@ struct ComplexHandle {
   CellComplex* changeable = nullptr;  ///< null: it belongs to an environment
   std::shared_ptr<Usage> usage = std::make_shared<Usage>();
 
-  /// Calls f(complex) while the complex is in use.
-  template <class F>
-  auto call(const F& f) const {
-    const Use use(*usage, "the complex (an edit of it may be open)");
-    return f(*complex);
-  }
+  [[nodiscard]] Use use() const { return Use(*usage, "the complex (an edit of it may be open)"); }
+  [[nodiscard]] const CellComplex& object() const { return *complex; }
 };
 
 /// A map of its own, or that of a complex, a surface or an open edit.
@@ -85,13 +95,8 @@ struct MapHandle {
   std::shared_ptr<Usage> usage = std::make_shared<Usage>();
   std::function<const CombinatorialMap&()> of_edit = {};  ///< the map of an edit: throws where that has ended
 
-  [[nodiscard]] const CombinatorialMap& read() const { return of_edit ? of_edit() : *map; }
-  /// Calls f(map) while the map is in use.
-  template <class F>
-  auto call(const F& f) const {
-    const Use use(*usage, "the map");
-    return f(read());
-  }
+  [[nodiscard]] Use use() const { return Use(*usage, "the map"); }
+  [[nodiscard]] const CombinatorialMap& object() const { return of_edit ? of_edit() : *map; }
 };
 
 /// Points of an edit to which it can be rolled back: none beyond one that was returned to, and none before a commit.
@@ -123,19 +128,13 @@ struct EditHandle {
   std::shared_ptr<Savepoints> savepoints = std::make_shared<Savepoints>();
   std::unique_ptr<OwnEdit> own = {};
 
+  [[nodiscard]] Use use() const { return Use(*usage, "the edit"); }
+  [[nodiscard]] ComplexEdit& target() const { return open(); }
   [[nodiscard]] ComplexEdit& open() const {
     if (edit == nullptr)
       throw InvalidArgument(
           "this edit has ended: use it in its `with` block, or in the function given to edit(), only");
     return *edit;
-  }
-  /// Calls f(edit) while it is in use, without Python's lock.
-  template <class F>
-  auto change(const F& f) const {
-    const Use use(*usage, "the edit");
-    ComplexEdit& own_edit = open();
-    const pybind11::gil_scoped_release release;
-    return f(own_edit);
   }
   /// Throws InUse while another thread's call uses the edit. Undoes it where it is Python's own and not committed.
   void end() {

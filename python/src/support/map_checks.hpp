@@ -25,20 +25,6 @@ void expect_number(std::size_t number, std::size_t end, const char* what);
 /// Where a number is not finite, or the normal is zero.
 void expect_plane(const Plane& plane);
 
-/// Calls f(object) while what the handle holds is in use.
-template <class Handle, class Function>
-auto read(const Handle& handle, const Function& f) {
-  return handle.call(f);
-}
-/// The same without Python's lock.
-template <class Handle, class Function>
-auto read_long(const Handle& handle, const Function& f) {
-  return handle.call([&](const auto& object) {
-    const pybind11::gil_scoped_release release;
-    return f(object);
-  });
-}
-
 /// The map of a complex, to be read.
 MapHandle map_of(const ComplexHandle& complex);
 

@@ -92,53 +92,30 @@ struct Given<const MeshData&> {
   MeshUse use;
   Given(const From<MeshData>& from) : value((check_arrays(from.given), from.given)), use(from.given) {}  // NOLINT
 };
-template <>
-struct Given<const CombinatorialMap&> {
-  using Python = MapHandle;
+template <class Object, class Handle>
+struct GivenInHandle {
+  using Python = Handle;
   Use use;
-  const CombinatorialMap& value;
-  Given(const From<MapHandle>& from) : use(*from.given.usage, "the map"), value(from.given.read()) {}  // NOLINT
-};
-template <>
-struct Given<const CellComplex&> {
-  using Python = ComplexHandle;
-  Use use;
-  const CellComplex& value;
-  Given(const From<ComplexHandle>& from)  // NOLINT
-      : use(*from.given.usage, "the complex (an edit of it may be open)"), value(*from.given.complex) {}
-};
-template <>
-struct Given<ComplexEdit&> {
-  using Python = EditHandle;
-  Use use;
-  ComplexEdit& value;
-  Given(const From<EditHandle>& from) : use(*from.given.usage, "the edit"), value(from.given.open()) {}  // NOLINT
-};
-template <>
-struct Given<Transaction&> {
-  using Python = TransactionHandle;
-  Use use;
-  Transaction& value;
-  Given(const From<TransactionHandle>& from)  // NOLINT
-      : use(*from.given.usage, "the transaction"), value(from.given.open()) {}
-};
+  Object& value;
+  GivenInHandle(const From<Handle>& from) : use(from.given.use()), value(object(from.given)) {}  // NOLINT
 
-template <>
-struct Given<const Environment&> {
-  using Python = EnvironmentHandle;
-  Use use;
-  const Environment& value;
-  Given(const From<EnvironmentHandle>& from)  // NOLINT
-      : use(*from.given.usage, "the environment"), value(*from.given.environment) {}
+ private:
+  static Object& object(const Handle& handle) {
+    if constexpr (std::is_const_v<Object>) {
+      return handle.object();
+    } else {
+      return handle.target();
+    }
+  }
 };
-template <>
-struct Given<const Particles&> {
-  using Python = ParticlesHandle;
-  Use use;
-  const Particles& value;
-  Given(const From<ParticlesHandle>& from)  // NOLINT
-      : use(*from.given.usage, "the set of particles"), value(from.given.particles) {}
-};
+// clang-format off
+template <> struct Given<const CombinatorialMap&> : GivenInHandle<const CombinatorialMap, MapHandle> { using GivenInHandle::GivenInHandle; };
+template <> struct Given<const CellComplex&> : GivenInHandle<const CellComplex, ComplexHandle> { using GivenInHandle::GivenInHandle; };
+template <> struct Given<const Environment&> : GivenInHandle<const Environment, EnvironmentHandle> { using GivenInHandle::GivenInHandle; };
+template <> struct Given<const Particles&> : GivenInHandle<const Particles, ParticlesHandle> { using GivenInHandle::GivenInHandle; };
+template <> struct Given<ComplexEdit&> : GivenInHandle<ComplexEdit, EditHandle> { using GivenInHandle::GivenInHandle; };
+template <> struct Given<Transaction&> : GivenInHandle<Transaction, TransactionHandle> { using GivenInHandle::GivenInHandle; };
+// clang-format on
 
 // Ids must be those of the map. All else C++ checks by itself.
 inline void expect(const CombinatorialMap& map, Cell c) { expect_cell(map, c); }
@@ -216,9 +193,9 @@ auto calling_of(std::span<const Argument> names, const Function& f) {
           if constexpr (std::is_same_v<std::remove_const_t<Object>, Handle>) {
             return on(handle);
           } else if constexpr (std::is_const_v<Object>) {
-            return handle.call(on);
+            return read(handle, on);
           } else {
-            return handle.change(on);
+            return change(handle, on);
           }
         },
         std::index_sequence_for<Arguments...>(), python...);

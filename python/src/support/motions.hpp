@@ -14,13 +14,8 @@ struct DeformationHandle {
   Deformation deformation;
   mutable Usage usage = {};
 
-  /// Calls f(deformation) while it is in use, without Python's lock.
-  template <class F>
-  auto change(const F& f) {
-    const Use use(usage, "the deformation");
-    const pybind11::gil_scoped_release release;
-    return f(deformation);
-  }
+  [[nodiscard]] Use use() const { return Use(usage, "the deformation"); }
+  [[nodiscard]] Deformation& target() { return deformation; }
 };
 
 using ComplexPointer = std::shared_ptr<ComplexHandle>;
@@ -32,11 +27,8 @@ struct FieldHandle {
   std::size_t vertices = 0;  ///< of the complex, that the field has followed
   mutable Usage usage = {};
 
-  template <class F>
-  auto call(const F& f) const {
-    const Use use(usage, "the field");
-    return f(field);
-  }
+  [[nodiscard]] Use use() const { return Use(usage, "the field"); }
+  [[nodiscard]] const VectorField& object() const { return field; }
 };
 using FieldPointer = std::shared_ptr<FieldHandle>;
 
