@@ -100,7 +100,7 @@ void bind_shared_particles(py::module_& m) {
           if (width > most) throw InvalidArgument("SharedParticles: at most 65536 numbers for a particle");
           return std::make_shared<ParticlesOfRanks>(width);
         }),
-        about("SharedParticles::SharedParticles"))
+        py::arg("width") = 0, about("SharedParticles::SharedParticles"))
       .def("__len__", calling<ParticlesOfRanks>(&SharedParticles::size))
       .def(
           "user_data",
