@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Checks the English of documents, of comments in C++ and of names of tests: banned words and phrases
-(tools/banned_words.txt), and how sentences start.
+(tools/banned_words.txt), how sentences start, and in public headers how long they are.
 
 Prose is read paragraph by paragraph, so that a phrase is found across the end of a line. Code in documents is left out,
 but for names that are no longer in use.
@@ -20,6 +20,8 @@ CODE_SPAN = re.compile(r"`[^`\n]+`")
 TEST_NAME = re.compile(r"\bTEST(?:_F|_P)?\(\w+, (\w+)\)")
 # What opens a sentence in the wrong way. A question may start with "What" or "Who".
 OPENING = re.compile(r"(?:(?<=^)|(?<=[.!?:;] )|(?<=\| ))(Of|What|Who|That)\b(?P<rest>[^.!?]*)(?P<end>[.!?]?)")
+SENTENCE_END = re.compile(r"(?<=[.!?:;]) ")
+MOST_WORDS = 25  # of a sentence in the contract, without what stands in parentheses
 REMEDIES = {
     "Of": 'name the subject first: "The cells in a pool.", not "Of the cells in a pool."',
     "What": "name the thing: which value, which step, which rule",
@@ -122,6 +124,12 @@ def findings_of(paragraph: Paragraph, bans: list[Ban]) -> list[str]:
     for match in OPENING.finditer(prose):
         if match.group("end") != "?":
             found.append(f'{where(match)}: a sentence starts with "{match.group(1)}": {REMEDIES[match.group(1)]}')
+    if paragraph.path.parts[0] == "include" and "-------" not in whole:  # no table
+        for sentence in SENTENCE_END.split(re.sub(r"\([^)]*\)", "", whole)):
+            words = [word for word in sentence.split() if re.search(r"\w", word)]
+            if len(words) > MOST_WORDS:
+                start = " ".join(words[:6])
+                found.append(f'{paragraph.path}:{paragraph.lines[0][0]}: "{start} ...": {len(words)} words: make it two')
     return found
 
 

@@ -113,9 +113,9 @@ struct MatchOptions {
   std::vector<std::vector<std::uint32_t>> clusters = {};
 };
 
-/// Regions for MatchOptions::clusters: cubes of edge `size` on a lattice of half that spacing, those that hold points.
-/// Every point is in at most 8. Throws InvalidArgument where a point is not finite, the size is not positive, or it is
-/// so small beside the points' extent that lattice numbers exceed 2^20. Cost: n log n.
+/// Regions for MatchOptions::clusters: cubes of edge `size` on a lattice of half that spacing, those that hold
+/// points. Every point is in at most 8. Throws InvalidArgument if a point is not finite or the size is not positive.
+/// It also throws if the size is so small that lattice numbers exceed 2^20. Cost: n log n.
 std::vector<std::vector<std::uint32_t>> overlapping_clusters(std::span<const Vec3> points, double size);
 
 /// Properties of one body. SI units.
@@ -143,8 +143,8 @@ struct AddBodyResult {
   SolidPlacement surface;              ///< where all points are: why its surface has no room, if it has none
 };
 
-/// Mechanical energy in joules. The potential energy counts from the corner of the box around the environment's first
-/// positions where it is least, so that no part is negative there.
+/// Mechanical energy in joules. The potential energy is 0 at one corner of the box around the environment's first
+/// positions. It is the lowest corner, so that no part is negative there.
 struct BodyEnergy {
   double kinetic = 0.0;
   double potential = 0.0;
@@ -225,10 +225,10 @@ struct BodiesCheckpoint {
 /// A step, after the environment may have moved:
 ///  1. Motion. Runge-Kutta's method of order 4 gives velocities and positions under gravity and the matching forces;
 ///  each stage computes the fits anew. Environment::advance() then moves the particles there. A contact sees the
-///  velocity of its moment. All incident walls answer at once: with restitution where the particle was not on that face
-///  at the end of the last step and comes faster than two steps of its acceleration explain, else without; and with
-///  friction (response/incident_walls.hpp). The particle is then integrated for the rest of the step, along the walls
-///  that it would enter.
+///  velocity of its moment. All incident walls answer at once, with friction (response/incident_walls.hpp). A wall
+///  answers with restitution if two things hold: the particle was not on that face at the end of the last step, and
+///  two steps of its acceleration do not explain its speed. The particle is then integrated for the rest of the step,
+///  along the walls that it would enter.
 ///  2. Pull. The fits are computed again, and Environment::advance() moves the particles towards their goals. Positions
 ///  alone change, which takes out energy. The exact goal is the place of rest in the body: where the matching force is
 ///  in balance with the centrifugal force, or with gravity where the body has met a wall. Damping and drag act on
@@ -270,11 +270,12 @@ class Bodies {
   /// missed a move. Cost: about 0.5 us per particle; for a surface 0.6 us per vertex, mean of a body that rests.
   const BodiesStep& step();
 
-  /// Moves the environment straight to these positions of all the mesh's points. Cells carry particles and surfaces along;
-  /// surfaces that walls would run into give way, and where they cannot, walls and surfaces stop at the same share of their
-  /// ways, which is returned. Other particles must then be advanced, as after Environment::move(). Without any surface it is
-  /// Environment::move(), and the owner may call that in its place. Throws as Environment::move(), and InvalidArgument where
-  /// the bodies missed a move or an edit, or no step() came after the last move; nothing is changed then.
+  /// Moves the environment straight to these positions of all the mesh's points. Cells carry particles and surfaces
+  /// along. Surfaces that walls would run into give way. If they cannot, walls and surfaces stop at the same share of
+  /// their ways, which is returned. Other particles must then be advanced, as after Environment::move(). Without any
+  /// surface it is Environment::move(), and the owner may call that in its place. Throws as Environment::move(), and
+  /// InvalidArgument where the bodies missed a move or an edit, or no step() came after the last move; nothing is
+  /// changed then.
   double move_with(std::span<const Vec3> positions);
 
   /// A body as a rigid one, with its velocity at the end of the next step if it has no contacts. Its inverse mass is

@@ -103,9 +103,9 @@ struct CatheterCheckpoint {
 /// it. Results are the same bits for any number of threads.
 class Catheter {
  public:
-  /// Nothing is inserted yet. `environment` outlives the catheter; its owner edits it, and moves it by move_with(). Throws
-  /// InvalidArgument, which names the option, where one is out of range, the entry is in no free cell, the way from the
-  /// entry by the spacing is not free, or the environment is not of space.
+  /// Nothing is inserted yet. `environment` outlives the catheter; its owner edits it, and moves it by move_with().
+  /// Throws InvalidArgument, which names the option, if one is out of range. It also throws if the environment is
+  /// planar, the entry is in no free cell, or the way from it by the spacing is blocked.
   Catheter(Environment& environment, const CatheterOptions& options);
   ~Catheter();
   Catheter(const Catheter&) = delete;
@@ -196,9 +196,9 @@ struct CameraPath {
 /// 1974; C. Yuksel, S. Schaefer, J. Keyser, "Parameterization and applications of Catmull-Rom curves", 2011). They are
 /// evenly spaced along it, except where a wall keeps one off; the last is at its end. A camera is a particle that walks
 /// from the point before it to the spline, so that no wall is between. Points that repeat count once. Throws
-/// InvalidArgument where there are not two points, one (named) is in no free cell, the path would take more than
-/// `max_count` cameras, or the environment is not of space. Cost: 4 us per camera, and once after a move a grid over
-/// the cells (Environment::locate()).
+/// InvalidArgument if there are not two points, one (named) is in no free cell, or the environment is not of space. It
+/// also throws if the path would take more than `max_count` cameras. Cost: 4 us per camera, and once after a move a
+/// grid over the cells (Environment::locate()).
 CameraPath camera_path(Environment& environment, std::span<const Vec3> points, const CameraOptions& options = {});
 
 }  // namespace dartcast

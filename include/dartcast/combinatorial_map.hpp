@@ -120,8 +120,8 @@ class CombinatorialMap {
 
   CombinatorialMap() = default;
   /// Builds cells, sews faces by their vertices, and takes over free marks and patches. Precondition:
-  /// check_and_repair() found no defect. Throws InvalidMesh, which names the cell by its number in the mesh, where a
-  /// face has three cells or two on the same side, or a cell is not closed. Cost: linear, except for sorting.
+  /// check_and_repair() found no defect. Throws InvalidMesh if a face has three cells or two on the same side, or a
+  /// cell is not closed. It names the cell by its number in the mesh. Cost: linear, except for sorting.
   explicit CombinatorialMap(const MeshData& mesh, const SteinerPoints& steiner = {});
 
   /// 2 in the plane, where cells are polygons and faces are their edges; else 3.

@@ -84,8 +84,8 @@ class ComplexEdit {
   /// The position of a vertex. A vertex that this edit put on an edge lies in its middle until it is placed. A copy of
   /// a vertex lies where that vertex lies.
   [[nodiscard]] Vec3 position(Vertex v);
-  /// Places a vertex that this edit made. Throws InvalidArgument where this edit made no such vertex, or x is not
-  /// finite, outside the exact range, or not in the plane of a planar map.
+  /// Places a vertex that this edit made. Throws InvalidArgument if this edit made no such vertex. It also throws if
+  /// x is not finite, outside the exact range, or not in the plane of a planar map.
   void place(Vertex v, const Vec3& x);
   /// Places it at the weighted mean of older vertices. Data at the vertices follow by the same weights, which is better
   /// for a vertex in the middle of a face or a cell. `weights`: one per vertex of `of`; they sum to 1. Throws as above,

@@ -38,9 +38,9 @@ struct Contact {
   std::uint32_t together = 0;   ///< number of those, the last ones, that were met at this place (share_together)
   bool last = false;            ///< no further contact is allowed in this step
   double time_of_impact = 0.0;  ///< fraction of the step, in [0, 1]; that of a particle's contacts never falls
-  /// On the wall, rounded. The particle is put into the free closed cell there, at most 256 units in the last place of
-  /// the point's largest coordinate away, or 256 times 2^-300, if that is more. Where that is impossible, it is no farther
-  /// away than the start of its motion to the wall.
+  /// On the wall, rounded. The particle is put into the free closed cell there. It is at most 256 units in the last
+  /// place of the point's largest coordinate away, or 256 times 2^-300 if that is more. Where that is impossible, it
+  /// is no farther away than the start of its motion to the wall.
   Vec3 point;
   Vec3 wall_displacement;  ///< motion of the wall at that point over the whole step; zero in a scene at rest
   Vec3 displacement;       ///< motion that led to the contact, relative to the wall, up to its planned end
@@ -67,8 +67,8 @@ struct ContactList {
   void append(const ContactList& other);
 };
 
-/// A share of a displacement's largest component. A displacement that points into a wall by less than this along the
-/// wall's normal is meant to run along the wall, and the difference is rounding.
+/// A share of a displacement's largest component. If a displacement points into a wall by less than this along its
+/// normal, it is meant to run along the wall. The difference is rounding.
 inline constexpr double along_share = 4e-12;
 
 /// The motion of a particle after a contact, in the rest of the step.

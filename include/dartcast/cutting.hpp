@@ -92,9 +92,9 @@ struct BladePath {
 std::vector<ConvexTool> thicken(const Plane& plane, double width);
 /// Throws also where the number of sides is not 3 to 1000.
 std::vector<ConvexTool> thicken(const Disc& disc, double width);
-/// One tool for the region between two places of the blade, or two tools where that region is not flat. The tools join
-/// along planes that halve the angles between them. Throws also where there are fewer than two places, where the blade
-/// has no length or does not move, or where it turns back onto itself.
+/// One tool for the region between two places of the blade, or two tools where that region is not flat. The tools
+/// join along planes that halve the angles between them. It also throws if there are fewer than two places, or the
+/// blade has no length, does not move, or turns back onto itself.
 std::vector<ConvexTool> thicken(const BladePath& path, double width);
 
 /// An upright box. Throws InvalidArgument where it is empty or not finite.
@@ -150,8 +150,8 @@ Carved cut(ComplexEdit& edit, std::span<const Cell> cells, const Surface& surfac
   return carve(edit, cells, thicken(surface, width), Carving::open, options);
 }
 
-/// The open faces of some cells that have all corners at most `within` metres from a plane, such as those of an end of
-/// a vessel that was cut through. Cost: linear in the cells.
+/// The open faces of some cells that have all corners at most `within` metres from a plane. An end of a vessel that
+/// was cut through is an example. Cost: linear in the cells.
 std::vector<CellFace> open_faces(ComplexEdit& edit, std::span<const Cell> cells, const Plane& plane, double within);
 
 // Tying a vessel.
@@ -217,11 +217,11 @@ struct Reconnected {
 ///
 /// A new cell is free if the cells that it joins are free. A cell between a free and a blocked cell is blocked.
 ///
-/// Throws InvalidArgument where an end has no faces, a face does not exist or is named twice, the tolerance is negative
-/// or there is no such patch. Throws EditRefused where a face is not open, ends with a gap have a corner in common, a
-/// single cell would join free and blocked cells, or a rim is not a simple loop. Then everything is unchanged. Cost:
-/// that of the cells at the ends, times the number of starts of a match that look better than the best (few, where ends
-/// face each other).
+/// Throws InvalidArgument if an end has no faces, or a face does not exist or is named twice. It also throws if the
+/// tolerance is negative or there is no such patch. Throws EditRefused if a face is not open, ends with a gap have a
+/// corner in common, or a rim is not a simple loop. It also does so if a single cell would join free and blocked
+/// cells. Then everything is unchanged. Cost: that of the cells at the ends, times the number of starts of a match
+/// that look better than the best (few, where ends face each other).
 Reconnected reconnect(ComplexEdit& edit, std::span<const CellFace> a, std::span<const CellFace> b,
                       const ReconnectOptions& options = {});
 

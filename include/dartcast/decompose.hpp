@@ -34,11 +34,11 @@ struct DecomposeOptions {
 /// named rings are patch faces, in the ring's direction. Rings of one name share a patch. The same rings scaled by a
 /// power of two give the same cells.
 ///
-/// Throws InvalidMesh, which names ring and point, for a ring of fewer than three points, and for edges that cross,
-/// overlap, or run through another point. So does a point that is not finite, outside the exact range, off the plane
-/// z = 0, or given before in any ring. Rings may not touch themselves or each other. Throws InvalidArgument for no rings, 2^28 points or
-/// more, an option out of range, or a margin so small that the rectangle coincides with the drawing, or so large that
-/// it leaves the exact range.
+/// Throws InvalidMesh for a ring of fewer than three points, and for edges that cross, overlap, or run through
+/// another point. It names ring and point. So does a point that is not finite, outside the exact range, off the plane
+/// z = 0, or given before in any ring. Rings may not touch themselves or each other. Throws InvalidArgument for no
+/// rings, 2^28 points or more, and an option out of range. So does a margin that is so small that the rectangle
+/// coincides with the drawing, or so large that it leaves the exact range.
 ///
 /// Cost: n log n for usual drawings, 5 to 10 us and about 350 bytes a point. In addition, each edge costs the edges
 /// between points on either side of it that it has to break.

@@ -27,9 +27,10 @@ enum class DeformationKind : std::uint8_t {
   rotate,  ///< steady turns about the axis through the centre, one a period: by the angle 2 pi t / period. No
            ///< amplitude.
   swing,   ///< to and fro about that axis: by the angle A w(t)
-  bend,   ///< the axis becomes a circle's arc towards d: with k = A w(t) / length, a point at height s on the axis goes
-          ///< to centre + a sin(ks) / k + d (1 - cos(ks)) / k, its cross-section turning with it. Valid where k h < 1.
-  twist,  ///< cross-sections turn about the axis by A w(t) s / length
+  bend,    ///< the axis becomes a circle's arc towards d, of curvature k = A w(t) / length. A point at height s on the
+  ///< axis goes to centre + a sin(ks) / k + d (1 - cos(ks)) / k, and its cross-section turns with it. Valid where
+  ///< k h < 1.
+  twist,    ///< cross-sections turn about the axis by A w(t) s / length
   stretch,  ///< along the axis by f = 1 + A w(t), across it by 1 / sqrt(f): volumes stay. |A| < 1.
   pulse,    ///< x + A sin(2 pi (t / period - p / wavelength)) e, a wave that travels with p. e is the vertex's `field`;
             ///< without one r - a s (away from the axis), or r (away from the centre) where the axis is 0. p is the
@@ -90,9 +91,9 @@ class DeformationFrames;
 /// times read frames twice.
 class Deformation {
  public:
-  /// Copies the positions at rest. Throws InvalidArgument, naming the step and the member, where one is out of the
-  /// range above, not finite, or a list has not one entry per vertex. Frames with a reader are checked when they are
-  /// read.
+  /// Copies the positions at rest. Throws InvalidArgument, naming the step and the member, if one is out of the range
+  /// above or not finite. It also throws if a list has not one entry per vertex. Frames with a reader are checked
+  /// when they are read.
   Deformation(std::vector<DeformationStep> steps, std::span<const Vec3> rest);
 
   [[nodiscard]] std::size_t size() const { return size_; }

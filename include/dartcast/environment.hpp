@@ -164,11 +164,11 @@ class Environment {
 
   /// The first wall that each ray meets within `max_distance` of its origin; infinite: within the scene. Rays see walls
   /// from their free side. Directions have any length. Every decision is exact for the segment whose end has been
-  /// rounded: no ray passes between two faces or through an edge. `passed`: where not null, the cells on the way. Throws
-  /// InvalidArgument, naming the ray, where its origin is as locate() refuses it, or its direction is zero, not finite,
-  /// or in the plane has a z that is not 0. Throws also where the segment's end is out of the exact range, the distance is
-  /// negative or not a number, or the numbers differ. Precondition: as for locate(). Cost: locate() and a step for each ray, in
-  /// parallel; with `passed` a second walk.
+  /// rounded: no ray passes between two faces or through an edge. `passed`: where not null, the cells on the way.
+  /// Throws InvalidArgument, naming the ray, if locate() refuses its origin. It also throws if its direction is zero or
+  /// not finite, or in the plane has a z that is not 0. So do an end out of the exact range, a distance that is
+  /// negative or not a number, and numbers that differ. Precondition: as for locate(). Cost: locate() and a step for
+  /// each ray, in parallel; with `passed` a second walk.
   [[nodiscard]] std::vector<RayHit> cast_rays(std::span<const Vec3> origins, std::span<const Vec3> directions,
                                               double max_distance = std::numeric_limits<double>::infinity(),
                                               RayCells* passed = nullptr);
@@ -244,9 +244,9 @@ class Environment {
   StepReport advance(Particles& particles, std::span<const Vec3> targets, const ContactCallback& respond = {},
                      const StepOptions& options = {});
 
-  /// Advances as advance(), but asks in rounds: every particle stops at its next contact, one call answers all of them,
-  /// and the particles continue against the walls as these move in the step. Round k has the k-th contact of each
-  /// particle that has so many. The rounds end when no particle has a contact to answer. So there are at most
+  /// Advances as advance(), but asks in rounds. Every particle stops at its next contact, and one call answers all of
+  /// them. The particles then continue against the walls as these move in the step. Round k has the k-th contact of
+  /// each particle that has so many. The rounds end when no particle has a contact to answer. So there are at most
   /// StepOptions::max_contacts rounds, and none where no particle meets a wall.
   ///
   /// Results are the bits of advance() with a ContactCallback that gives the same answers: states, and the whole report

@@ -30,8 +30,9 @@ struct BoxOptions {
 /// are the sides of the box. `free` is filled if a cube is blocked. With a jitter above about 0.5, cells may become
 /// invalid.
 ///
-/// Throws InvalidArgument for no cubes along an axis, 2^29 cells or more, a size that is not positive, a number that is
-/// not finite, a share outside [0, 1], a jitter outside [0, 1], or polyhedra. Cost: about 0.15 us per hexahedron.
+/// Throws InvalidArgument for no cubes along an axis, 2^29 cells or more, and polyhedra. It also throws for a size
+/// that is not positive, a number that is not finite, and a share or jitter outside [0, 1]. Cost: about 0.15 us per
+/// hexahedron.
 MeshData generate_box(const BoxOptions& options);
 
 /// The bar of Jund, Cazier and Dufourd (2009): 5 x 5 x 28 unit cubes whose outer layer is blocked.
@@ -58,8 +59,8 @@ struct OctahedraOptions {
 /// double of few digits they are exact, and every face is exactly planar. Patch 1, "boundary", is the block's ragged
 /// outside. `free` is filled if a cell is blocked.
 ///
-/// Throws InvalidArgument for no cubes along an axis, 2^29 cells or more, a size that is not positive, a number that is
-/// not finite, or a share outside [0, 1]. Cost: about 2 us per cell.
+/// Throws InvalidArgument for no cubes along an axis, and 2^29 cells or more. It also throws for a size that is not
+/// positive, a number that is not finite, and a share outside [0, 1]. Cost: about 2 us per cell.
 MeshData generate_octahedra(const OctahedraOptions& options);
 
 // A blood vessel that branches: one inlet, two outlets, tissue around.
@@ -128,8 +129,8 @@ struct BarrelOptions {
 /// upper head. They are at equal distances along heights and radii, so that they also sample the barrel. Regions: 1
 /// "staves", 2 "heads".
 ///
-/// Throws InvalidArgument where a length is not positive (bulge: negative) or not finite, where there are fewer than 3
-/// staves or more than 2^14, or where rows or rings are 0 or more than 2^14.
+/// Throws InvalidArgument if a length is not positive (bulge: negative) or not finite. It also throws for fewer than 3
+/// staves, and rows or rings of 0, and for more than 2^14 of any.
 MeshData generate_barrel(const BarrelOptions& options = {});
 
 // Rectangles of squares in the plane, each square one quadrilateral, cut into triangles, or merged into hexagons.
@@ -161,9 +162,9 @@ inline constexpr double largest_polygon_jitter = 0.3;
 /// Patches 1 to 4 ("xmin", "xmax", "ymin", "ymax") are the sides of the rectangle. `free` is filled if a square is
 /// blocked. Cells are merged only from squares that are all free or all blocked.
 ///
-/// Throws InvalidArgument for no squares along an axis, 2^29 cells or more, a size that is not positive, a number that
-/// is not finite, a share outside [0, 1], a jitter that is negative or above the largest, or cells of space. Cost:
-/// about 0.1 us a cell.
+/// Throws InvalidArgument for no squares along an axis, 2^29 cells or more, and cells of space. It also throws for a
+/// size that is not positive, and a number that is not finite. So do a share outside [0, 1] and a jitter that is
+/// negative or above the largest. Cost: about 0.1 us a cell.
 MeshData generate_rectangle(const RectangleOptions& options);
 
 // Mazes in the plane: rooms full of obstacles, joined by doors.
@@ -190,9 +191,10 @@ struct MazeOptions {
 /// connected. So all free cells are connected by edges between free cells, and every room has some. All boundary edges
 /// are in patch 1, "border".
 ///
-/// Throws InvalidArgument for no rooms along an axis, rooms without squares, doors without squares or wider than a
-/// room, as many obstacles as a room has squares, a share outside [0, 1], and as generate_rectangle() does. Cost: about
-/// 0.1 us a cell, and for each obstacle about 10 ns times the squares of a room.
+/// Throws InvalidArgument for no rooms along an axis, rooms without squares, and doors without squares or wider than
+/// a room. It also throws for as many obstacles as a room has squares, a share outside [0, 1], and as
+/// generate_rectangle() does. Cost: about 0.1 us a cell, and for each obstacle about 10 ns times the squares of a
+/// room.
 MeshData generate_maze(const MazeOptions& options);
 
 }  // namespace dartcast

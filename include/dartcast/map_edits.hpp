@@ -88,11 +88,11 @@ struct DraftForm {
   std::string defect;                  ///< why it is not a cell; empty: it is one
 };
 
-/// Checks a draft by itself. It needs at least four faces of at least three distinct corners, every edge once in each
-/// direction, the surface of a sphere, points distinct from corners, and at most 16383 darts. In the plane it needs at
-/// least three edges that are one cycle of distinct corners. A draft without Steiner points that is combinatorially a
-/// tetrahedron, hexahedron, prism, pyramid, triangle or quadrilateral takes that form. Cost: linear in its darts, on
-/// average.
+/// Checks a draft by itself. It needs at least four faces of at least three distinct corners, and every edge once in
+/// each direction. It must be the surface of a sphere, with points distinct from corners and at most 16383 darts. In
+/// the plane it needs at least three edges that are one cycle of distinct corners. A draft without Steiner points
+/// that is combinatorially a tetrahedron, hexahedron, prism, pyramid, triangle or quadrilateral takes that form.
+/// Cost: linear in its darts, on average.
 DraftForm form_of(const CellDraft& draft, unsigned dimension = 3);
 /// The forms of several drafts, in order. Throws as form_of().
 std::vector<DraftForm> forms_of(std::span<const CellDraft> drafts, unsigned dimension);
@@ -318,8 +318,7 @@ struct Violation {
 ///  - both sides of a face are fanned from the same point, or from no Steiner point;
 ///  - a face starts at its lowest-numbered vertex;
 ///  - vertices are in range, and distinct in a cell;
-///  - a face is marked as a wall, and its vertices as those of a wall, where exactly one side is free or there is no
-///    other side.
+///  - a face and its vertices are marked as a wall's if exactly one side is free, or there is no other side.
 ///
 /// Returns at most `max_count` violations. Cost: linear in the darts.
 std::vector<Violation> check_integrity(const CombinatorialMap& map, std::span<const Cell> cells,

@@ -66,8 +66,8 @@ bool is_surface_file(const std::filesystem::path& path);
 
 /// Reads .stl (ASCII, binary), .obj, .ply (ASCII, binary), .off or .vtp, by ending and content, and then calls
 /// check_and_repair_surface(). Nothing in the file makes this throw: a file that cannot be read has a defect of kind
-/// "file" in the report, with line or byte. Points keep their order, and points that no face uses are kept, so that
-/// Surface::move() can take the positions of another file of the same faces; formats/stl.hpp says which points a .stl
+/// "file" in the report, with line or byte. Points keep their order, and points that no face uses are kept. So
+/// Surface::move() can take the positions of another file of the same faces. formats/stl.hpp says which points a .stl
 /// has. The option `max_memory` counts, the other does not. Cost: n log n; a few times the file's size in memory.
 MeshFile check_surface(const std::filesystem::path& path, const ReadOptions& options = {});
 
@@ -99,13 +99,13 @@ MeshFile mesh_surfaces(const SurfaceScene& scene, const ReadOptions& options = {
 
 // Writing meshes.
 
-/// Writes a mesh in the format of the path's ending: .vtu, .vtk (legacy), .msh or .msh2 (Gmsh 2.2 ASCII), .msh4
-/// (Gmsh 4.1 ASCII), .mesh (Medit). read_mesh() reads the same cells, points bit by bit, regions and patches back. Data
-/// without a place in the format are left out: arrays and `free` outside VTK's formats; names of regions and patches in
-/// .mesh. The bytes go to a file beside the path, with ".part" in its name. When it is whole it takes the
-/// path's place; on failure the file at the path is unchanged. Precondition: check_and_repair() found the mesh valid.
-/// Throws InvalidArgument where the ending is none of writable_mesh_endings(), or where .msh or .mesh should hold
-/// polyhedra, polygons or faces of more than four corners, or baffles; Error where the file cannot be written.
+/// Writes a mesh in the format of the path's ending: .vtu, .vtk (legacy), .msh or .msh2 (Gmsh 2.2 ASCII), .msh4 (Gmsh
+/// 4.1 ASCII), .mesh (Medit). read_mesh() reads the same cells, points bit by bit, regions and patches back. Data
+/// without a place in the format are left out: arrays and `free` outside VTK's formats; names of regions and patches
+/// in .mesh. The bytes go to a file beside the path, with ".part" in its name. When it is whole it takes the path's
+/// place; on failure the file at the path is unchanged. Precondition: check_and_repair() found the mesh valid. Throws
+/// InvalidArgument if the ending is none of writable_mesh_endings(). It also throws if .msh or .mesh should hold
+/// polyhedra, polygons, faces of more than four corners, or baffles. Throws Error if the file cannot be written.
 void write_mesh(const MeshData& mesh, const std::filesystem::path& path);
 
 // Meshes in pieces, for ranks.

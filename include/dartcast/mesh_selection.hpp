@@ -20,9 +20,9 @@ void select_free_regions(MeshData& mesh, std::span<const std::string> regions);
 /// The cells of a region, by their numbers in the mesh. Throws as select_free_regions().
 std::vector<std::uint32_t> cells_of_region(const MeshData& mesh, const std::string& region);
 
-/// As select_free_regions(), by a cell array of one component: a cell is free where its value is one of `values`. Throws
-/// InvalidMesh, which lists the arrays that exist, where there is no such array or it has several components, or where
-/// no cell has one of the values.
+/// As select_free_regions(), by a cell array of one component: a cell is free where its value is one of `values`.
+/// Throws InvalidMesh, which lists the arrays that exist, if there is no such array or it has several components. It
+/// also throws if no cell has one of the values.
 void select_free_values(MeshData& mesh, const std::string& array, std::span<const double> values);
 
 // Selection of the groups of wall faces to distinguish.
@@ -34,9 +34,9 @@ void select_patches(MeshData& mesh, std::span<const std::string> names);
 
 /// Divides the walls into patches at sharp edges. They replace the patches of the mesh. Walls are the faces of free
 /// cells without a free cell behind them: those on the boundary, and those between free and blocked cells. Two walls
-/// with an edge in common (in the plane: with an end) are in one patch if their normals differ by at most `degrees`,
-/// and the edge belongs to these two walls alone. A patch is all walls that are connected in this way. The normal of a
-/// warped face is that of its projected area.
+/// with an edge in common (in the plane: with an end) may be in one patch. For that, their normals differ by at most
+/// `degrees`, and the edge belongs to these two alone. A patch is all walls that are connected in this way. The normal
+/// of a warped face is that of its projected area.
 ///
 /// Patches are named patch1, patch2, ... in the order of the first cell, by its number in the file, with a face in
 /// them. If that is the same cell, the corners of the first such face decide. Precondition: check_and_repair() found

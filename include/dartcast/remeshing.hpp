@@ -40,9 +40,9 @@ struct Subdivided {
 /// faces are straight. The neighbour across a face has it split into the same quadrilaterals. Parts keep the free mark
 /// and the source, faces their patch.
 ///
-/// Middles that neighbours already have are used. So neighbours that are subdivided one after the other, any number of
-/// times, conform. Faces that may lie in one plane (CombinatorialMap::flat()) count as one face with its middle, if
-/// they have a vertex among them that is joined to a vertex on each edge. If there are several such vertices, those
+/// Middles that neighbours already have are used. So neighbours that are subdivided one after the other, any number
+/// of times, conform. Faces that may lie in one plane (CombinatorialMap::flat()) count as one face with its middle.
+/// For that, one vertex among them must be joined to a vertex on each edge. If there are several such vertices, those
 /// next to the middle are taken. Other faces that may lie in one plane are subdivided separately.
 ///
 /// Throws InvalidArgument where there is no such cell. Throws EditRefused, nothing changed, where a face would have

@@ -98,10 +98,10 @@ struct Acceleration {
 ContactCallback respond_with(const WallResponses& responses, std::span<Vec3> velocities,
                              std::span<ParticleStatus> fates, double dt, const Acceleration& acceleration = {});
 
-/// Gives particles that a step has stopped, at a wall beyond their last contact (StepReport::stopped), a velocity that
-/// all walls met in the step permit, with no more energy than they had at that wall. They stand still for the rest of
-/// the step, so gravity gives them no energy in it. Call it after an advance() with respond_with(), with the same
-/// arguments. Cost: linear in the contacts of the step; nothing where none is stopped.
+/// Serves particles that a step has stopped at a wall beyond their last contact (StepReport::stopped). Each gets a
+/// velocity that all walls met in the step permit, with no more energy than it had at that wall. They stand still for
+/// the rest of the step, so gravity gives them no energy in it. Call it after an advance() with respond_with(), with
+/// the same arguments. Cost: linear in the contacts of the step; nothing where none is stopped.
 void hold_stopped(const StepReport& report, const WallResponses& responses, std::span<Vec3> velocities,
                   std::span<const ParticleStatus> fates, double dt, const Acceleration& acceleration = {});
 

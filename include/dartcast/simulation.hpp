@@ -111,8 +111,8 @@ struct LeftParticle {
   std::uint32_t contact = 0;  ///< its last contact: an index into those of the step
 };
 
-/// The results of one step. Where ranks share the particles, the first has those of all, the others their own. In a scene
-/// whose output needs no contacts (contacts, statistics, report) it has its own alone; LeftParticle::contact is none then.
+/// The results of one step. On rank 0 these are of all particles; on other ranks, of their own. In a scene whose
+/// output needs no contacts (contacts, statistics, report) it has its own alone; LeftParticle::contact is none then.
 struct SimulationStep {
   double duration = 0.0;  ///< s
   /// Of the particles; it names them by their index during the step, and those of another rank by none (0xffffffff).
@@ -215,9 +215,9 @@ struct SolidSummary {
 ///  1. Events that are due edit the environment.
 ///  2. Inlets inject particles.
 ///  3. Vertices move.
-///  4. Velocities change. Without a field, or with drag, dv/dt = g - drag (v - u) is solved exactly for constant g
-///     and u, taken at the start of the step or segment. Here g is gravity and the force's acceleration at the
-///     particle, and u is the field's velocity there, or 0. With a field and no drag v = u, and g has no effect.
+///  4. Velocities change. Without a field, or with drag, dv/dt = g - drag (v - u) is solved exactly. g and u are those
+///     at the start of the step or segment. Here g is gravity and the force's acceleration at the particle, and u is
+///     the field's velocity there, or 0. With a field and no drag v = u, and g has no effect.
 ///  5. Particles advance by v dt, wall responses included. Those absorbed or escaped leave.
 ///  6. Bodies step, then catheters. Statistics take what happened.
 ///  7. Where it is due, invalid cells are remeshed and crowded cells are subdivided.
@@ -257,8 +257,8 @@ class Simulation {
   /// Throws InvalidArgument where the deformation is made for another number of points, and in the plane as
   /// Deformation::check_plane().
   void set_deformation(Deformation deformation);
-  /// Injects `rate` particles a second at random places of a patch, from the next step on. Throws InvalidArgument where
-  /// the patch has no face at a free cell, the rate is negative or more than 2^31 particles a step, or as add().
+  /// Injects `rate` particles a second at random places of a patch, from the next step on. Throws as add(). Throws
+  /// InvalidArgument if the patch has no face at a free cell, or the rate is negative or above 2^31 a step.
   void add_inlet(Patch patch, double rate, const Vec3& velocity, double radius = 0.0,
                  std::span<const double> user_data = {});
 
@@ -390,11 +390,11 @@ class Simulation {
   std::unique_ptr<Parts> parts_;
 };
 
-/// Adds particles at random points of the free cells, of equal likelihood by volume (in the plane by area). A particle's
-/// point depends on the seed and its index in the set alone: an empty simulation of the same scene and seed adds the same
-/// ones. Throws InvalidArgument, nothing added, where no cell is free, the count is beyond 2^31, or the particles are of
-/// another environment or have missed a move or an edit; and where points fall outside again and again, because cells
-/// are too thin or not valid. Cost: linear in the cells, and about 1 us for each particle.
+/// Adds particles at random points of the free cells, of equal likelihood by volume (in the plane by area). A
+/// particle's point depends on the seed and its index in the set alone: an empty simulation of the same scene and seed
+/// adds the same ones. Throws InvalidArgument, nothing added, if no cell is free or the count is beyond 2^31. So do
+/// particles of another environment, or that have missed a move or an edit, and cells too thin to be hit. Cost: linear
+/// in the cells, and about 1 us for each particle.
 void add_random(Environment& environment, Particles& particles, std::size_t count, std::uint64_t seed = 1);
 
 }  // namespace dartcast

@@ -42,8 +42,8 @@ SolidMesh solid_of_cells(const MeshData& mesh);
 /// Points joined one after another by edges.
 SolidMesh solid_of_polyline(std::span<const Vec3> points);
 
-/// Throws InvalidMesh, which names the first defect: no points, a point outside the exact range, a number of a point that
-/// does not exist, a number twice in an edge or a triangle.
+/// Throws InvalidMesh, which names the first defect. Defects are no points, and a point outside the exact range. So are
+/// the number of a point that does not exist, and a number twice in an element.
 void check(const SolidMesh& mesh);
 
 /// Why a place is refused.
@@ -177,17 +177,18 @@ class SolidSet {
   /// Moves the vertices of all solids straight (a turn by its chord) towards these targets, with walls at rest. In order:
   ///  1. Detect: all contacts on the way to the targets. Without one the targets are reached.
   ///  2. Correct the targets, so that the contacts found so far keep their separation, and detect again; in rounds.
-  ///  3. Cut: what still meets a wall goes 15/16 of the way to its first contact, as a whole. The rounded positions are
-  ///     checked again, and the way halved, until it is free.
-  /// Throws InvalidArgument, nothing changed, where the number does not match, a target is not finite or outside the exact
-  /// range, an option is out of range, or the set missed a move or an edit. The report is valid until the next step. Cost:
-  /// some 2 us for an edge as long as a cell, whatever the size of the scene.
+  ///  3. Cut: what still meets a wall goes 15/16 of the way to its first contact, as a whole. The rounded positions
+  ///     are checked again, and the way halved, until it is free. Throws InvalidArgument, nothing changed, if the
+  ///     number does not match, or a target is not finite or outside the exact range. It also throws if an option is
+  ///     out of range, or the set missed a move or an edit. The report is valid until the next step. Cost: some 2 us
+  ///     for an edge as long as a cell, whatever the size of the scene.
   const SolidStep& advance(std::span<const Vec3> targets, const SolidStepOptions& options = {});
 
-  /// As advance(), while the vertices of the environment move straight to `positions`, those of all the mesh's points. It
-  /// makes that move. Where walls would run into a solid even if it stayed where it is, the environment and all solids
-  /// stop at the same share of their ways, SolidStep::walls_made; where it is 0, the move goes nowhere. Other sets of particles must then be advanced, as after
-  /// Environment::move(). Throws as advance() and Environment::move().
+  /// As advance(), while the vertices of the environment move straight to `positions`, those of all the mesh's
+  /// points. It makes that move. If walls would run into a solid even though it stayed, the environment and all
+  /// solids stop at the same share of their ways, SolidStep::walls_made. If that is 0, the move goes nowhere. Other
+  /// sets of particles must then be advanced, as after Environment::move(). Throws as advance() and
+  /// Environment::move().
   const SolidStep& move_with(std::span<const Vec3> targets, std::span<const Vec3> positions,
                              const SolidStepOptions& options = {});
 

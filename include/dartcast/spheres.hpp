@@ -53,10 +53,10 @@ class SphereStepper {
   ///   straight lines. The wall then carries the centre for the rest of the step. The rest of the way is relative to
   ///   that wall, and is tested against the walls as they stand at the end, as for points. The contact is where the
   ///   centre itself comes to a wall, if it does (its way relative to the cells is a chord).
-  /// - Overlaps. A sphere that overlaps walls at the start (after a move(): once the wall has carried it) first moves
-  ///   out along the normals, as far as other walls allow, and never through one. Where there is no room it stays where
-  ///   its depths are balanced. It then makes its own motion. While it still overlaps it counts as a sphere of the
-  ///   radius that there is room for, so that it may go along and out, but not deeper.
+  /// - Overlaps. A sphere may overlap walls at the start (after a move(): once the wall has carried it). It then
+  ///   first moves out along the normals, as far as other walls allow, and never through one. Where there is no room
+  ///   it stays where its depths are balanced. It then makes its own motion. While it still overlaps it counts as a
+  ///   sphere of the radius that there is room for. So it may go along and out, but not deeper.
   /// - options.max_contacts limits the contacts in a step, as for points.
   ///
   /// `clearances`: no wall is nearer to a particle's centre, as walls and particles stand; none, or one each. Where a
@@ -64,8 +64,8 @@ class SphereStepper {
   ///
   /// Throws as Environment::advance(), and InvalidArgument where a radius is out of range or their number does not
   /// match; then nothing is changed. Cost: that of a point where the clearance suffices. Else 0.1 to 0.3 us for each
-  /// cell that the sphere reaches (three of them at a radius of 0.2 cell sizes), 0.1 to 0.4 us for each wall triangle
-  /// there, and some us for each contact.
+  /// cell that the sphere reaches (three of them at a radius of 0.2 cell sizes), and 0.1 to 0.4 us for each wall
+  /// triangle there. A contact costs some us.
   SphereReport advance(Environment& environment, Particles& particles, std::span<const double> radii,
                        std::span<const Vec3> targets, const ContactCallback& respond = {},
                        const StepOptions& options = {}, std::span<const double> clearances = {});

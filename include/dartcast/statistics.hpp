@@ -82,9 +82,9 @@ struct SectionPlane {
   double radius = 0.0;  ///< of the disc around `point`; 0: the whole plane
 };
 
-/// Throws InvalidArgument, which names the plane, where its name is not as above, or another plane has it. So do a point
-/// that is not finite or outside the exact range, a normal that is not finite or zero, and a radius that is not finite
-/// or negative.
+/// Throws InvalidArgument, which names the plane, where its name is not as above, or another plane has it. It also
+/// throws for a point that is not finite or outside the exact range. So do a normal that is not finite or zero, and a
+/// radius that is not finite or negative.
 void check(std::span<const SectionPlane> planes);
 
 /// A particle that passed a plane.
@@ -143,9 +143,9 @@ struct StatisticsOptions {
   [[nodiscard]] bool any() const { return hits || residence || !planes.empty() || pathlines(); }
 };
 
-/// A crossing with its time. Residence times count from the start of the first step that a particle takes part in,
-/// which for those of inlets is the step that injects them. Particles that are there when statistics are set start
-/// with the next step.
+/// A crossing with its time. Residence times count from the start of the first step that a particle takes part in.
+/// For those of inlets it is the step that injects them. Particles that are there when statistics are set start with
+/// the next step.
 struct PlanePassage {
   PlaneCrossing crossing;
   std::uint64_t id = 0;

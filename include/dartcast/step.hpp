@@ -99,9 +99,9 @@ struct StepReport {
 /// A passage from one cell to another. Exact signs decide which face, edge or vertex it goes through. Time and point
 /// are rounded.
 ///
-/// Where a walk turns around an edge or a vertex, passages at the same place are joined to one, from the first cell to
-/// the last. If these are the same, there is no passage. At a face the cells are neighbours. At an edge or a vertex
-/// they share at least that.
+/// If a walk turns around an edge or a vertex, passages at the same place are joined: from the first cell to the last.
+/// If these are the same, there is no passage. At a face the cells are neighbours. At an edge or a vertex they share at
+/// least that.
 struct Crossing {
   double time = 0.0;  ///< fraction of the step, in [0, 1]; never less than that of the crossing before
   Vec3 point;         ///< on the face, edge or vertex as it is at `time`; at a vertex its position

@@ -224,12 +224,12 @@ struct SurfaceTrace {
 /// From a vertex it is an angle around the vertex. If it points away from the triangle, the path goes straight through
 /// the vertex. Otherwise the angle is counted from the triangle's corner around the vertex on the shorter side.
 ///
-/// The place always ends in a free face of the surface, because a ray leaves a triangle by one of its edges or corners
-/// by construction (surface/unfold.hpp). A step of zero length has no contact. A step that ends exactly on a wall has a
-/// contact at time 1.
+/// The place always ends in a free face of the surface: by construction a ray leaves a triangle by an edge or a corner
+/// (surface/unfold.hpp). A step of zero length has no contact. A step that ends exactly on a wall has a contact at time
+/// 1.
 ///
-/// Throws InvalidArgument, the place unchanged, where the place is not one of this surface, max_contacts is 0, or the
-/// displacement (or that of a response) is not finite or above 2^300.
+/// Throws InvalidArgument, the place unchanged, if it is not one of this surface or max_contacts is 0. It also throws
+/// if a displacement is not finite or above 2^300.
 SurfaceStep step(const Surface& surface, SurfacePlace& place, const Vec3& displacement,
                  const SurfaceContactCallback& respond = {}, const SurfaceOptions& options = {},
                  const SurfaceTrace& trace = {}, std::uint32_t particle = 0);
@@ -301,9 +301,9 @@ class SurfaceEdit {
   std::unique_ptr<Created> created_;
 };
 
-/// A place after an edit. If its face was not replaced, it stays as it is. If one of the new faces that come from its
-/// face (by source) has a triangle with the same corners, the place goes there with the same weights. Otherwise it goes
-/// to the nearest place in the new faces; at equal distances a face that comes from its own is preferred, then the
+/// A place after an edit. If its face was not replaced, it stays as it is. A new face that comes from its face (by
+/// source) may have a triangle with the same corners. The place then goes there with the same weights. Otherwise it
+/// goes to the nearest place in the new faces; at equal distances a face that comes from its own is preferred, then the
 /// first. So a place on an edge that is opened stays on its side.
 ///
 /// Returns nothing if no face took the place of the removed ones. Every place must follow each edit before the next.

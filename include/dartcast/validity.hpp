@@ -66,13 +66,13 @@ struct SimplexInversion {
 /// that touches zero and is positive again counts. Exact: no inversion is missed, none is invented. Precondition:
 /// `until` is in [0, 1]; it is rounded down to a multiple of inversion_resolution.
 ///
-/// The kind: a corner is counted to one of the parts if its facet's area, projected along an axis, is proved to keep
-/// its sign until the root. This is so where the area is above 2^-35 of the simplex's extents before and after.
-/// Otherwise the corner is counted to neither part. So the kinds from vertex_edge to line mean: this, or too close to
-/// it to distinguish. Coordinates outside the exact range may give undecidable even where the volume stays positive.
+/// The kind: a corner is counted to one of the parts if its facet's area along an axis is proved to keep its sign
+/// until the root. This is so where the area is above 2^-35 of the simplex's extents before and after. Otherwise the
+/// corner is counted to neither part. So the kinds from vertex_edge to line mean: this, or too close to it to
+/// distinguish. Coordinates outside the exact range may give undecidable even where the volume stays positive.
 ///
-/// Cost: about 20 ns where the filter proves the volume positive, some 0.1 us where it must halve the step, 2 to 5 us
-/// where exact signs are needed, 20 us where the simplex is inverted.
+/// Cost: about 20 ns if the filter proves the volume positive, and some 0.1 us if it must halve the step. If exact
+/// signs are needed, 2 to 5 us; if the simplex is inverted, 20 us.
 ///
 /// The cubic is that of X. Provot, "Collision and self-collision handling in cloth model dedicated to design garments",
 ///  1997. Its first root is enclosed by exact signs of its values, its discriminant and Bernstein's coefficients.
