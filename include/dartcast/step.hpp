@@ -20,6 +20,9 @@ struct TestCounts {
 };
 
 /// Sums over particle-steps. Addition is in integers, so that the order of adding does not matter.
+///
+/// Tests are counted where one process has all cells. Where ranks share the cells, `orientation`, `histogram`,
+/// `forecast_kept` and `updated_by_deformation` are 0.
 struct Counters {
   static constexpr std::size_t histogram_size = 64;
 

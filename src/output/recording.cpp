@@ -18,6 +18,7 @@
 #include "output/particle_frame.hpp"
 #include "output/run_files.hpp"
 #include "output/run_lock.hpp"
+#include "output/summary.hpp"
 
 namespace dartcast {
 
@@ -176,9 +177,12 @@ RecordingProgress Recording::progress() {
 
 void Recording::add_step(const Simulation& simulation, const SimulationStep& step, const StepSums& sums) {
   const Counters& c = step.report.counters;
-  stats_.print("{},{},{},{},{},{},{},{},{},{},{},{}", simulation.steps(), simulation.time(), sums.alive, step.injected,
-               step.absorbed, step.escaped, step.report.held.size(), c.contacts[0] + c.contacts[1] + c.contacts[2],
-               c.orientation.tests, c.orientation.exact, c.forecast_kept, c.updated_by_deformation);
+  stats_.print("{},{},{},{},{},{},{},{}", simulation.steps(), simulation.time(), sums.alive, step.injected,
+               step.absorbed, step.escaped, step.report.held.size(), c.contacts[0] + c.contacts[1] + c.contacts[2]);
+  if (counts_tests(c) && counts_tests(simulation.totals().counters))
+    stats_.print(",{},{},{},{}", c.orientation.tests, c.orientation.exact, c.forecast_kept, c.updated_by_deformation);
+  else
+    stats_.print(",,,,");
   if (options_.surgery) stats_.print(",{}", simulation.event_log().in_opened);
   stats_.print(",{},{}\n", sums.energy.kinetic, sums.energy.potential);
   if (options_.contacts) write_contacts(simulation, step);

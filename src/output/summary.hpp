@@ -13,6 +13,10 @@ namespace dartcast {
 /// has, or for more planes than options.
 void check_summary(const Summary& summary);
 
+/// Whether the tests of all these steps were counted. Runs by cells count steps alone: the histogram then lacks them.
+inline bool counts_tests(const Counters& c) {
+  return std::accumulate(c.histogram.begin(), c.histogram.end(), std::uint64_t{0}) == c.particle_steps;
+}
 inline double ratio(std::uint64_t a, std::uint64_t b) { return static_cast<double>(a) / static_cast<double>(b); }
 inline double ns_per_particle_step(const Summary& s) {
   return s.totals.seconds_detect * 1e9 / static_cast<double>(s.totals.counters.particle_steps);

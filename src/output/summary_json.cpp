@@ -10,16 +10,22 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// Each is null where not all were counted.
 Json orientation_tests(const Summary& s) {
   const Counters& c = s.totals.counters;
   std::size_t size = c.histogram.size();
   while (size > 1 && c.histogram[size - 1] == 0) --size;
   Json json = {{"mean", ratio(c.orientation.tests, c.particle_steps)},
                {"histogram", std::vector<std::uint64_t>(c.histogram.begin(),
-                                                        c.histogram.begin() + static_cast<std::ptrdiff_t>(size))}};
-  if (c.orientation.tests > 0) json["exact_share"] = ratio(c.orientation.exact, c.orientation.tests);
-  json["forecast_kept_share"] = ratio(c.forecast_kept, c.particle_steps);
+                                                        c.histogram.begin() + static_cast<std::ptrdiff_t>(size))},
+               {"exact_share", ratio(c.orientation.exact, c.orientation.tests)},
+               {"forecast_kept_share", ratio(c.forecast_kept, c.particle_steps)}};
   if (s.deforms) json["updated_by_deformation_share"] = ratio(c.updated_by_deformation, c.particle_steps);
+  if (!counts_tests(c)) {
+    for (Json& value : json) value = nullptr;
+  } else if (c.orientation.tests == 0) {
+    json.erase("exact_share");
+  }
   return json;
 }
 

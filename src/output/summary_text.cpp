@@ -85,9 +85,12 @@ void add_cost(SummaryTable& table, const Summary& s) {
   const SimulationTotals& t = s.totals;
   const Counters& c = t.counters;
   if (c.particle_steps > 0) {
-    table.add("a step", {fmt::format("{:.2f} orientation tests", ratio(c.orientation.tests, c.particle_steps)),
-                         fmt::format("forecast kept in {:.1f} %", 100.0 * ratio(c.forecast_kept, c.particle_steps)),
-                         fmt::format("{:.0f} ns a particle", ns_per_particle_step(s))});
+    std::vector<std::string> step;
+    if (counts_tests(c))
+      step = {fmt::format("{:.2f} orientation tests", ratio(c.orientation.tests, c.particle_steps)),
+              fmt::format("forecast kept in {:.1f} %", 100.0 * ratio(c.forecast_kept, c.particle_steps))};
+    step.push_back(fmt::format("{:.0f} ns a particle", ns_per_particle_step(s)));
+    table.add("a step", step);
   }
   std::vector<std::string> parts;
   const auto add = [&](std::string_view part, double seconds) {
@@ -202,6 +205,7 @@ std::string summary_text(const Summary& s) {
 
 std::string histogram_text(const Summary& s) {
   const Counters& c = s.totals.counters;
+  if (!counts_tests(c)) return "orientation tests: not counted\n";
   std::string out = "orientation tests: share of particle-steps\n";
   for (std::size_t i = 0; i < c.histogram.size(); ++i) {
     if (c.histogram[i] > 0) out += fmt::format("{:4}: {:.4f}%\n", i, 100.0 * ratio(c.histogram[i], c.particle_steps));

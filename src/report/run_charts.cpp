@@ -64,8 +64,9 @@ class Steps {
     const char* at = line.data();
     const char* const end = at + line.size();
     for (std::size_t i = 0; i < columns_.size(); ++i) {
-      double value = 0.0;
-      const auto [next, error] = std::from_chars(at, end, value);
+      double value = std::nan("");  // an empty field
+      const bool empty = at == end || *at == ',';
+      const auto [next, error] = empty ? std::from_chars_result{at, {}} : std::from_chars(at, end, value);
       const bool ends_well = i + 1 == columns_.size() ? next == end : next != end && *next == ',';
       if (error != std::errc() || !ends_well)
         throw Error(fmt::format("{}:{}: it is damaged: column {} has no number", path.string(), row, columns_[i].name));

@@ -18,7 +18,7 @@ inline constexpr double sums = 7.0;
 inline constexpr double summed_bytes = 8.0 * (2 * ExactSum::word_count + 4) + sizeof(Counters) + 24.0;
 
 /// The bytes of a particle that goes to another rank: its walk, and what a simulation keeps beside it.
-inline constexpr double sent_bytes = 240.0;
+inline constexpr double sent_bytes = 216.0;
 inline constexpr double seconds_of_packing = 60e-9;  ///< on each side
 /// The bytes of a particle that stays: state, memory of its walk, and what a simulation keeps beside it.
 inline constexpr double particle_bytes = sizeof(ParticleState) + 150.0;

@@ -405,15 +405,6 @@ inline Contact with_walls(const ContactList& met, const Contact& contact, Contac
   return here;
 }
 
-// Counts a complete step's tests.
-template <class Run>
-[[gnu::always_inline]] inline void count_tests(Run& run) {
-  ++run.counters.particle_steps;
-  run.counters.orientation.tests += run.tests.tests;
-  run.counters.orientation.exact += run.tests.exact;
-  ++run.counters.histogram[std::min<std::size_t>(run.tests.tests, Counters::histogram_size - 1)];
-}
-
 // Saves a step that waits at a contact, and counts one that is complete. It started at p in the simplex `start`.
 template <std::size_t N, class Recorder>
 [[gnu::always_inline]] inline StepResult finish(const CellComplex& complex, bool moved, RunOf<Recorder>& run,
@@ -422,14 +413,12 @@ template <std::size_t N, class Recorder>
     run.recorder.save(run, start, p);
     return {};
   }
-  if constexpr (Recorder::travels) {
-    if (run.recorder.has_travelled()) {
-      run.recorder.count(run, moved);
-      return run.result;
-    }
-  }
   Counters& counters = run.counters;
-  count_tests(run);
+  ++counters.particle_steps;
+  if constexpr (Recorder::travels) return run.result;  // its tests are not counted
+  counters.orientation.tests += run.tests.tests;
+  counters.orientation.exact += run.tests.exact;
+  ++counters.histogram[std::min<std::size_t>(run.tests.tests, Counters::histogram_size - 1)];
   const bool kept = run.state.at() == start && run.contact_count == 0 && !run.result.held;
   counters.forecast_kept += kept ? 1 : 0;
   if (moved && run.state.at() != start && left_behind(current_space<N>(complex).corners(start), p))

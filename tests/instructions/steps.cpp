@@ -152,7 +152,6 @@ int travel() {
   using Clock = std::chrono::steady_clock;
   Traveller walk;
   walk.stage = TravelStage::on_way;
-  walk.travelled = true;
   walk.walk.end = WalkEnd::wall;
   const std::vector<Traveller> leaving(batch, walk);
   std::vector<Traveller> come;

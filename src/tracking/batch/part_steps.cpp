@@ -17,6 +17,19 @@
 
 namespace dartcast::detail {
 
+namespace {
+
+// Steps that go from rank to rank are not the batch's: it would have asked other questions.
+Counters without_tests(Counters c) {
+  c.orientation = {};
+  c.histogram = {};
+  c.forecast_kept = 0;
+  c.updated_by_deformation = 0;
+  return c;
+}
+
+}  // namespace
+
 class PartSteps {
  public:
   PartSteps(const BatchStepper& batch, const ContactCallback& respond, const GrowingParticles& particles,
@@ -46,6 +59,7 @@ class PartSteps {
     std::sort(report_.held.begin(), report_.held.end(), lower);
     std::sort(report_.stopped.begin(), report_.stopped.end(), lower);
     report_.contacts = by_particle();
+    report_.counters = without_tests(report_.counters);
     return std::move(report_);
   }
 
@@ -91,8 +105,8 @@ class PartSteps {
       TravellingPause pause;
       const TravelResult result =
           stepper_.start(static_cast<std::uint32_t>(p), particles_.states[p], particles_.weights[p], targets[p], met,
-                         report_.counters, so_far, status[i] != step_untouched, pause);
-      if (complete) take_back(pause.traveller);
+                         report_.counters, so_far, pause);
+      if (complete) --report_.counters.particle_steps;  // the batch has counted it, too
       take(result, std::move(pause), static_cast<std::uint32_t>(p), met, waiting_);
     }
   }
@@ -100,17 +114,6 @@ class PartSteps {
   // Whether a step that the batch has ended may lie on walls that this rank does not know.
   [[nodiscard]] bool must_be_taken_back(const ParticleState& s) const {
     return !cells_.is_own(s.cell) && zeros_of(complex_.corners(s.at()), s.position) != 0;
-  }
-
-  // The batch has counted a step that leaves, and has counted it up to here.
-  void take_back(const Traveller& t) {
-    const TestCounts counted = t.far.counted(t.tests);
-    Counters& c = report_.counters;
-    --c.particle_steps;
-    c.orientation.tests -= counted.tests;
-    c.orientation.exact -= counted.exact;
-    --c.histogram[std::min<std::size_t>(counted.tests, Counters::histogram_size - 1)];
-    c.updated_by_deformation -= t.left_behind ? 1 : 0;
   }
 
   // A step that has come as far as it can, here and now.

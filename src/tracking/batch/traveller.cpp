@@ -11,11 +11,9 @@ namespace dartcast {
 namespace {
 
 constexpr std::uint8_t has_result = 1;
-constexpr std::uint8_t has_left_behind = 2;
-constexpr std::uint8_t has_restarted = 4;
-constexpr std::uint8_t is_held = 8;
-constexpr std::uint8_t has_parts = 16;
-constexpr std::uint8_t is_far = 32;
+constexpr std::uint8_t has_restarted = 2;
+constexpr std::uint8_t is_held = 4;
+constexpr std::uint8_t has_parts = 8;
 
 struct PackedState {
   Vec3 position;
@@ -30,11 +28,9 @@ struct PackedState {
 };
 
 struct PackedStep {
-  TestCounts tests;
   double last_time;
   TimeInterval interval;
   Vec3 target;
-  SimplexId start;
   std::uint32_t home;
   std::uint32_t contact_count;
   std::uint32_t together;
@@ -56,9 +52,8 @@ struct PackedWalk {
 std::uint8_t flags_of(const Traveller& t) {
   const auto flag = [](bool set, std::uint8_t f) { return set ? f : std::uint8_t{0}; };
   return static_cast<std::uint8_t>(flag(t.result.held || t.result.stopped, has_result) |
-                                   flag(t.left_behind, has_left_behind) | flag(t.restarted, has_restarted) |
-                                   flag(t.state.held, is_held) | flag(t.parts > 1, has_parts) |
-                                   flag(t.far.by != FarWalk::By::determinants, is_far));
+                                   flag(t.restarted, has_restarted) | flag(t.state.held, is_held) |
+                                   flag(t.parts > 1, has_parts));
 }
 
 }  // namespace
@@ -83,13 +78,12 @@ void pack(const Traveller& t, ByteWriter& out) {
   if ((flags & is_held) != 0) out.put(t.weights);
   if ((flags & has_result) != 0) out.put(t.result);
   if (t.stage == TravelStage::done) return;
-  out.put(PackedStep{t.tests, t.last_time, t.interval, t.target, t.start, t.home, t.contact_count, t.together});
+  out.put(PackedStep{t.last_time, t.interval, t.target, t.home, t.contact_count, t.together});
   if ((flags & has_parts) != 0) out.put(PackedParts{t.step_target, t.part, t.parts});
   for (const CarriedWall& w : t.walls) out.put(w);
   if (t.stage != TravelStage::on_way) return;
   out.put(PackedWalk{t.walk.simplex, t.walk.end, t.walk.zeros, t.walk.wall_facet});
   for (unsigned i = 0; i < t.ties.count; ++i) out.put(t.ties.corner[i]);
-  if ((flags & is_far) != 0) out.put(t.far);
 }
 
 void unpack(ByteReader& in, Traveller& t) {
@@ -99,18 +93,14 @@ void unpack(ByteReader& in, Traveller& t) {
   t.state.touching_count = s.touching_count;
   t.state.touching = s.touching;
   t.state.held = (s.flags & is_held) != 0;
-  t.left_behind = (s.flags & has_left_behind) != 0;
   t.restarted = (s.flags & has_restarted) != 0;
   if (t.state.held) t.weights = in.take<Weights>();
   if ((s.flags & has_result) != 0) t.result = in.take<StepResult>();
   if (t.stage == TravelStage::done) return;
-  t.travelled = true;
   const auto step = in.take<PackedStep>();
-  t.tests = step.tests;
   t.last_time = step.last_time;
   t.interval = step.interval;
   t.target = step.target;
-  t.start = step.start;
   t.home = step.home;
   t.contact_count = step.contact_count;
   t.together = step.together;
@@ -129,7 +119,6 @@ void unpack(ByteReader& in, Traveller& t) {
   t.walk.wall_facet = walk.wall_facet;
   t.ties.count = s.ties;
   for (unsigned i = 0; i < s.ties; ++i) t.ties.corner[i] = in.take<Vec3>();
-  if ((s.flags & is_far) != 0) t.far = in.take<FarWalk>();
 }
 
 }  // namespace dartcast

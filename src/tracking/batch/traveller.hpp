@@ -9,7 +9,6 @@
 #include "dartcast/particle_state.hpp"
 #include "dartcast/step.hpp"
 #include "parts/part_cells.hpp"
-#include "tracking/batch/far_walk_counts.hpp"
 #include "tracking/step.hpp"
 
 namespace dartcast {
@@ -52,10 +51,6 @@ struct Traveller {
   ParticleState state;         ///< of the last contact, of the last part, or of the start
   Weights weights{};
   StepResult result;
-  SimplexId start;           ///< of the step
-  bool travelled = false;    ///< it has left the rank where the step started
-  bool left_behind = false;  ///< see Counters::updated_by_deformation
-  TestCounts tests;
   std::uint32_t contact_count = 0;
   std::uint32_t together = 0;  ///< walls met at the place of the last contact
   double last_time = -1.0;     ///< of that
@@ -65,7 +60,6 @@ struct Traveller {
   Vec3 target;       ///< of the walk
   Vec3 step_target;  ///< of the whole step
   Walk walk;         ///< on_way: as far as it has come
-  FarWalk far;       ///< on_way: the same walk in a batch
   bool restarted = false;
   TieCorners ties;
   std::vector<CarriedWall> walls;  ///< met earlier in this step, oldest first

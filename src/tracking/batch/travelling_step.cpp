@@ -21,10 +21,6 @@ Vec3 place_of(const Between& positions, const CarriedWall& wall, unsigned i) {
   return wall.before[i] + (wall.now[i] - wall.before[i]) * positions.s;
 }
 
-// The time of the step at which vertices are there.
-double time_of(const Stored&) { return 1.0; }
-double time_of(const Between& positions) { return positions.s; }
-
 // Whether this rank has its cell, and those of the walls that it touches.
 bool is_known(const ParticleState& s) {
   const auto touching = std::span(s.touching).first(s.touching_count);
@@ -44,8 +40,6 @@ class TravelRecorder {
       : complex_(&complex), cells_(&cells), pause_(&pause) {
     pause.step.waits = false;
   }
-  /// The first walk is counted as in a batch.
-  void begin_in_batch() { in_batch_ = true; }
 
   // As the recorder of steps that pause.
   static NoVisitor visitor() { return {}; }
@@ -67,7 +61,6 @@ class TravelRecorder {
   }
 
   [[nodiscard]] bool left() const { return left_; }
-  [[nodiscard]] bool has_travelled() const { return traveller().travelled; }
   /// The next walk is the rest of the traveller's.
   void take_up_walk() { takes_up_ = true; }
 
@@ -88,21 +81,17 @@ class TravelRecorder {
   template <class Positions>
   Walk walk(const Space<Positions, N>& space, Run& run, const PartialStep* partial, const Vec3& p, const Vec3& q,
             const TimeInterval& interval) {
-    const bool in_batch = std::exchange(in_batch_, false);
-    detail::FarWalkCounts far(*complex_, time_of(space.positions), p, q, run.tests);
     if (takes_up_) {
       takes_up_ = false;
       const TieCorners ties = traveller().ties;
       const bool restarted = traveller().restarted;
-      return end(space, run, take_up(space, ties, p, q, run.tests, far), far, ties, restarted, p, q, interval);
+      return end(space, run, take_up(space, ties, p, q, run.tests), ties, restarted, p, q, interval);
     }
     const SimplexId start = run.state.at();
     const TieCorners ties = ties_of(space, start, p);
-    if (partial != nullptr) return end(space, run, partial->walk, far, ties, false, p, q, interval);
-    if (in_batch) far.begin(start, moved_);
-    const Walk walk = detail::walk_to_wall(space, start, p, q, run.tests, far);
-    far.end(walk);
-    return end(space, run, walk, far, ties, false, p, q, interval);
+    NoVisitor none;
+    const Walk walk = partial != nullptr ? partial->walk : detail::walk_to_wall(space, start, p, q, run.tests, none);
+    return end(space, run, walk, ties, false, p, q, interval);
   }
 
   template <class Positions>
@@ -118,31 +107,17 @@ class TravelRecorder {
     return facet_plane(v, 0);
   }
 
-  // At the end of a call: the step waits or leaves. `start`, `p`: of the step, where this rank has begun it.
-  void save(const Run& run, SimplexId start, const Vec3& p) {
+  // At the end of a call: the step waits or leaves.
+  void save(const Run& run, SimplexId, const Vec3&) {
     PausedStep& step = pause_->step;
     step.particle = run.particle;
-    step.start = start;
-    step.start_position = p;
-    step.tests = run.tests;
     step.contact_count = run.contact_count;
     if (is_known(run.state)) {  // else it is what it was when it came here
       traveller().state = whole_state(*cells_, run.state);
       traveller().home = cells_->owner(run.state.cell);
     }
-    if (left_) save_traveller(run, start, p);
+    if (left_) save_traveller(run);
   }
-
-  // Counts a step that is complete here and began elsewhere.
-  void count(const Run& run, bool moved) const {
-    Counters& counters = run.counters;
-    detail::count_tests(run);
-    const bool in_start = cells_->whole(run.state.at()) == traveller().start;
-    counters.forecast_kept += in_start && run.contact_count == 0 && !run.result.held ? 1 : 0;
-    counters.updated_by_deformation += moved && !in_start && traveller().left_behind ? 1 : 0;
-  }
-
-  void set_moved(bool moved) { moved_ = moved; }
 
  private:
   [[nodiscard]] Traveller& traveller() const { return pause_->traveller; }
@@ -155,7 +130,6 @@ class TravelRecorder {
     t.target = q;
     t.interval = interval;
     t.part = t.parts = 1;
-    t.far = {};
   }
 
   // Whether cells around the end of a walk matter that this rank may not know.
@@ -178,11 +152,10 @@ class TravelRecorder {
   // The traveller's walk as this rank's own cells have it: it leaves its simplex by the facet, or meets a wall there.
   template <class Positions>
   Walk take_up(const Space<Positions, N>& space, const TieCorners& ties, const Vec3& p, const Vec3& q,
-               TestCounts& counts, detail::FarWalkCounts& far) const {
+               TestCounts& counts) const {
     Walk walk = traveller().walk;
     walk.simplex = cells_->here(walk.simplex);
     walk.wall_simplex = walk.simplex;
-    far.go_on(traveller().far, walk.simplex, walk.wall_facet);
     if (walk.end == WalkEnd::arrived) return walk;
     const CellView cell = space.map->view(walk.simplex.cell);
     const Across across = cell.shape().simplices()[walk.simplex.simplex].across[walk.wall_facet];
@@ -190,17 +163,15 @@ class TravelRecorder {
     constexpr unsigned all = (1U << N) - 1U;
     const Passage next = pass(*space.map, walk.simplex, cell, across);
     detail::Ties<Positions, N> tie_breaker(space, p, q, std::span(ties.corner).first(ties.count));
-    walk = detail::walk_on(space, next.simplex, all & ~(1U << next.facet), N - 1, p, q, tie_breaker, counts, far);
-    far.end(walk);
-    return walk;
+    NoVisitor none;
+    return detail::walk_on(space, next.simplex, all & ~(1U << next.facet), N - 1, p, q, tie_breaker, counts, none);
   }
 
-  void leave_on_way(const Walk& walk, const FarWalk& far, const TieCorners& ties, bool restarted, const Vec3& q,
+  void leave_on_way(const Walk& walk, const TieCorners& ties, bool restarted, const Vec3& q,
                     const TimeInterval& interval) {
     leave(TravelStage::on_way, q, interval);
     Traveller& t = traveller();
     t.walk = walk;
-    t.far = far;
     t.walk.simplex = t.walk.wall_simplex = cells_->whole(walk.simplex);
     t.to = cells_->owner(walk.simplex.cell);
     t.ties = ties;
@@ -209,13 +180,12 @@ class TravelRecorder {
 
   // As detail::end_walk(), where it does not leave.
   template <class Positions>
-  Walk end(const Space<Positions, N>& space, Run& run, Walk walk, const detail::FarWalkCounts& far,
-           const TieCorners& ties, bool restarted, const Vec3& p, const Vec3& q, const TimeInterval& interval) {
+  Walk end(const Space<Positions, N>& space, Run& run, Walk walk, const TieCorners& ties, bool restarted, const Vec3& p,
+           const Vec3& q, const TimeInterval& interval) {
     if (needs_others(walk)) {
-      leave_on_way(walk, far.walk(), ties, restarted, q, interval);
+      leave_on_way(walk, ties, restarted, q, interval);
       return walk;
     }
-    run.tests = far.walk().counted(run.tests);
     if (walk.end == WalkEnd::wall && !walk.at_end && !restarted) {
       ++run.tests.tests;
       if (orient_facet(space.corners(walk.wall_simplex), walk.wall_facet, p) == Sign::zero) {
@@ -225,7 +195,7 @@ class TravelRecorder {
           NoVisitor none;
           walk = detail::walk_to_wall(space, restart, p, q, run.tests, none);
           if (needs_others(walk)) {
-            leave_on_way(walk, {}, ties_of(space, restart, p), true, q, interval);
+            leave_on_way(walk, ties_of(space, restart, p), true, q, interval);
             return walk;
           }
         }
@@ -249,18 +219,12 @@ class TravelRecorder {
     return wall;
   }
 
-  void save_traveller(const Run& run, SimplexId start, const Vec3& p) {
+  void save_traveller(const Run& run) {
     Traveller& t = traveller();
     t.particle = run.particle;
-    if (!t.travelled) {
-      t.travelled = true;
-      t.start = cells_->whole(start);
-      t.left_behind = moved_ && detail::left_behind(current_space<N>(*complex_).corners(start), p);
-    }
     if (t.stage != TravelStage::on_way) t.to = t.home;
     t.result = run.result;
     t.result.invalid_cell = cells_->whole(run.result.invalid_cell);
-    t.tests = run.tests;
     t.contact_count = run.contact_count;
     t.last_time = run.last_time;
     const auto walls = std::span(run.contacts.walls).subspan(run.first_wall);
@@ -271,10 +235,8 @@ class TravelRecorder {
   const CellComplex* complex_;
   const PartCells* cells_;
   TravellingPause* pause_;
-  bool moved_ = false;
   bool left_ = false;
   bool takes_up_ = false;
-  bool in_batch_ = false;
 };
 
 template <std::size_t N>
@@ -296,22 +258,17 @@ Vec3 rest_of_walk(const CellComplex& complex, bool moved, const StepOptions& opt
 template <std::size_t N>
 TravelResult TravellingStepper::start_in(std::uint32_t particle, ParticleState& state, Weights& weights,
                                          const Vec3& target, ContactList& contacts, Counters& counters,
-                                         const PartialStep* partial, bool in_batch, TravellingPause& pause) const {
+                                         const PartialStep* partial, TravellingPause& pause) const {
   using Recorder = TravelRecorder<N>;
   pause.traveller = {};
   pause.traveller.step_target = target;
   pause.traveller.home = cells_.rank();
   detail::RunOf<Recorder> run{
       particle, state, contacts, counters, {}, 0, 0, 0, -1.0, {}, Recorder(complex_, cells_, pause)};
-  run.recorder.set_moved(moved_);
-  if (N == 4 && in_batch) run.recorder.begin_in_batch();
   run.first_wall = run.first_here = static_cast<std::uint32_t>(contacts.walls.size());
-  const SimplexId start = state.at();
-  const Vec3 p = state.position;
   const Space<Stored, N> space = current_space<N>(complex_);
   const detail::StepPart<Stored, N, Recorder> whole(complex_, moved_, space, options_, no_response);
   if (partial != nullptr) {
-    run.tests = partial->tests;
     if (partial->parts > 1) {
       detail::MovingStep<N, Recorder>(complex_, options_, no_response).resume(run, weights, target, *partial);
     } else {
@@ -320,14 +277,14 @@ TravelResult TravellingStepper::start_in(std::uint32_t particle, ParticleState& 
     }
   } else if (moved_) {
     detail::MovingStep<N, Recorder>(complex_, options_, no_response).run(run, weights, target);
-  } else if (state.held && (!detail::positive(space.corners(start)) || !complex_.map().is_free(start.cell))) {
+  } else if (state.held && (!detail::positive(space.corners(state.at())) || !complex_.map().is_free(state.cell))) {
     run.result.held = true;
     run.result.invalid_cell = state.cell;
   } else {
     state.held = false;
     whole.move(run, target, {0.0, 1.0, {}});
   }
-  const StepResult result = detail::finish<N>(complex_, moved_, run, start, p);
+  const StepResult result = detail::finish<N>(complex_, moved_, run, {}, {});
   return result_of<N>(run, result, pause);
 }
 
@@ -351,9 +308,8 @@ TravelResult TravellingStepper::go_on_in(ParticleState& state, Weights& weights,
                               first_wall,
                               end_wall - t.together,
                               t.last_time,
-                              t.tests,
+                              {},
                               Recorder(complex_, cells_, pause)};
-  run.recorder.set_moved(moved_);
   const detail::MovingStep<N, Recorder> moving(complex_, options_, no_response);
   if (t.stage == TravelStage::carry) {
     moving.go_on(run, weights, t.step_target, t.interval.later, t.part, t.parts);
@@ -396,26 +352,25 @@ TravelResult TravellingStepper::answer_in(const ContactList& met, const Contact&
                               here.first_wall - here.earlier,
                               here.first_wall - here.together,
                               here.time_of_impact,
-                              step.tests,
+                              {},
                               Recorder(complex_, cells_, pause)};
-  run.recorder.set_moved(moved_);
   if (step.parts > 1)
     detail::MovingStep<N, Recorder>(complex_, options_, no_response)
         .move_on(run, weights, here, next, step.interval, step.part, step.parts);
   else
     detail::StepPart<Stored, N, Recorder>(complex_, moved_, current_space<N>(complex_), options_, no_response)
         .move_on(run, here, next, step.interval);
-  const StepResult result = detail::finish<N>(complex_, moved_, run, step.start, step.start_position);
+  const StepResult result = detail::finish<N>(complex_, moved_, run, {}, {});
   if (contacts.contacts.size() == contact_count) contacts.walls.resize(wall_count);
   return result_of<N>(run, result, pause);
 }
 
 TravelResult TravellingStepper::start(std::uint32_t particle, ParticleState& state, Weights& weights,
                                       const Vec3& target, ContactList& contacts, Counters& counters,
-                                      const PartialStep* partial, bool in_batch, TravellingPause& pause) const {
+                                      const PartialStep* partial, TravellingPause& pause) const {
   if (complex_.map().dimension() == 2)
-    return start_in<3>(particle, state, weights, target, contacts, counters, partial, in_batch, pause);
-  return start_in<4>(particle, state, weights, target, contacts, counters, partial, in_batch, pause);
+    return start_in<3>(particle, state, weights, target, contacts, counters, partial, pause);
+  return start_in<4>(particle, state, weights, target, contacts, counters, partial, pause);
 }
 
 TravelResult TravellingStepper::go_on(ParticleState& state, Weights& weights, ContactList& contacts, Counters& counters,

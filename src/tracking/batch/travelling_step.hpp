@@ -25,10 +25,10 @@ class TravellingStepper {
   TravellingStepper(const CellComplex& complex, const PartCells& cells, bool moved, const StepOptions& options)
       : complex_(complex), cells_(cells), moved_(moved), options_(options) {}
 
-  /// A step from its start, up to its first contact. `partial`: of a walk that ends in an own cell, or null. `in_batch`:
-  /// a batch on one rank begins the walk, and its tests are counted. Fills `pause` where it waits or leaves.
+  /// A step from its start, up to its first contact. `partial`: of a walk that ends in an own cell, or null. Fills
+  /// `pause` where it waits or leaves.
   TravelResult start(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
-                     ContactList& contacts, Counters& counters, const PartialStep* partial, bool in_batch,
+                     ContactList& contacts, Counters& counters, const PartialStep* partial,
                      TravellingPause& pause) const;
 
   /// A step that has come here: `pause.traveller`. `state`: state_here() of its state. Its earlier walls are added to
@@ -43,7 +43,7 @@ class TravellingStepper {
  private:
   template <std::size_t N>
   TravelResult start_in(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
-                        ContactList& contacts, Counters& counters, const PartialStep* partial, bool in_batch,
+                        ContactList& contacts, Counters& counters, const PartialStep* partial,
                         TravellingPause& pause) const;
   template <std::size_t N>
   TravelResult go_on_in(ParticleState& state, Weights& weights, ContactList& contacts, Counters& counters,
