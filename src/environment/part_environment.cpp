@@ -36,7 +36,7 @@ class RankTraffic final : public detail::PartTraffic {
     for (ByteWriter& w : to_) w.clear();
     for (const Traveller& t : leaving) {
       pack(t, to_[t.to]);
-      to_[t.to].put(data_.leave(t.particle, t.met));
+      to_[t.to].put(data_.leave(t.step.particle, t.met));
     }
     std::vector<std::string> bytes;
     for (const ByteWriter& w : to_) {

@@ -117,10 +117,18 @@ StepResult SimultaneousStep::step(std::uint32_t particle, ParticleState& state, 
     return run.result;
   }
   if (run.contact_count == 0) return stepper_.step(particle, state, weights, target, contacts, counters);
-  TakenPart taken = {leg.begin, leg.to, run.contact_count, run.first_wall, run.last_time};
-  if (end == LegEnd::stopped) taken.target.reset();
-  const StepResult rest = stepper_.ride_on(particle, state, weights, taken, contacts, counters);
-  if (end != LegEnd::stopped || rest.held) run.result = rest;
+  const bool stays = end == LegEnd::stopped;
+  StepState rest;
+  rest.begin(particle, state, leg.to, contacts);
+  rest.stage = StepStage::carry;
+  rest.interval.begin = leg.begin;
+  rest.contact_count = run.contact_count;
+  rest.first_wall = rest.first_here = run.first_wall;
+  rest.last_time = run.last_time;
+  rest.result.stopped = stays;  // at the wall that it met last, which carries it
+  stepper_.run(rest, {state, weights, contacts, counters});
+  if (stays) rest.result.stopped = false;
+  if (!stays || rest.result.held) run.result = rest.result;
   return run.result;
 }
 

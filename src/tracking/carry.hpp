@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "tracking/place_in_simplex.hpp"
-#include "tracking/step.hpp"
+#include "tracking/step_state.hpp"
 
 namespace dartcast::detail {
 

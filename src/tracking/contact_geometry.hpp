@@ -8,7 +8,7 @@
 
 #include "dartcast/contact.hpp"
 #include "tracking/carry.hpp"
-#include "tracking/step.hpp"
+#include "tracking/step_state.hpp"
 
 namespace dartcast::detail {
 

@@ -30,8 +30,11 @@ inline std::array<double, 2> passing_weights(const PlaneCorners& v, unsigned fac
 }
 
 /// Follows one particle through its step.
-class CrossingRecorder : public NeverWaits {
+class CrossingRecorder {
  public:
+  static constexpr bool waits = false;
+  static constexpr bool travels = false;
+
   /// `start`: its cell. `moved`: as for Stepper. `contacts`: those of the step.
   CrossingRecorder(const CellComplex& complex, bool moved, Cell start, const ContactList& contacts,
                    std::vector<Crossing>& crossings)

@@ -16,7 +16,7 @@
 #include <utility>
 
 #include "complex/simplex.hpp"
-#include "tracking/step.hpp"
+#include "tracking/step_state.hpp"
 
 namespace dartcast::detail {
 

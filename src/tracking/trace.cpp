@@ -7,11 +7,12 @@ namespace dartcast {
 
 StepResult Stepper::trace(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
                           ContactList& contacts, std::vector<Crossing>& crossings) const {
-  const detail::CrossingRecorder recorder(complex_, moved_, state.cell, contacts, crossings);
+  detail::CrossingRecorder recorder(setting_.complex, setting_.moved, state.cell, contacts, crossings);
   Counters counters;
-  if (complex_.map().dimension() == 2)
-    return step_in<3>(particle, state, weights, target, contacts, counters, nullptr, recorder);
-  return step_in<4>(particle, state, weights, target, contacts, counters, nullptr, recorder);
+  StepState step;
+  step.begin(particle, state, target, contacts);
+  detail::run_step(setting_, step, {state, weights, contacts, counters}, recorder);
+  return step.result;
 }
 
 }  // namespace dartcast

@@ -239,21 +239,34 @@ void find_wall_at_end(const CombinatorialMap& map, Walk& walk) {
   walk.wall_facet = static_cast<std::uint8_t>(wall->facet);
 }
 
-/// Ends a walk that has come to its first wall, or to the closed simplex that holds q.
-template <class Positions, std::size_t N, class Visitor = NoVisitor>
-Walk end_walk(const Space<Positions, N>& space, Walk walk, const Vec3& p, const Vec3& q, TestCounts& counts,
-              Visitor&& visit = {}) {
-  if (walk.end == WalkEnd::wall && !walk.at_end) {
+/// Ends a walk that has come to its first wall, or to the closed simplex that holds q. `restarted`: it has begun anew, from
+/// a wall that p lies on. Where `leaves(walk, start)` holds, it is returned as it is; start: of a walk that begins anew here,
+/// else null.
+template <class Positions, std::size_t N, class Visitor, class Leaves>
+[[gnu::always_inline]] inline Walk end_walk(const Space<Positions, N>& space, Walk walk, bool restarted, const Vec3& p,
+                                            const Vec3& q, TestCounts& counts, Visitor& visit, const Leaves& leaves) {
+  if (leaves(walk, nullptr)) return walk;
+  if (walk.end == WalkEnd::wall && !walk.at_end && !restarted) {
     ++counts.tests;
     if (orient_facet(space.corners(walk.wall_simplex), walk.wall_facet, p) == Sign::zero) {
       // p lies on the wall itself. It is met only if no free simplex around p leads towards q.
       const SimplexId restart = simplex_towards(space, walk.wall_simplex, p, q, counts);
       walk.at_start = !restart.valid();
-      if (restart.valid()) walk = walk_to_wall(space, restart, p, q, counts, visit);
+      if (restart.valid()) {
+        walk = walk_to_wall(space, restart, p, q, counts, visit);
+        if (leaves(walk, &restart)) return walk;
+      }
     }
   }
   if (walk.end == WalkEnd::arrived && walk.zeros != 0) find_wall_at_end<N>(*space.map, walk);
   return walk;
+}
+
+/// The same where all cells are known.
+template <class Positions, std::size_t N, class Visitor = NoVisitor>
+Walk end_walk(const Space<Positions, N>& space, const Walk& walk, const Vec3& p, const Vec3& q, TestCounts& counts,
+              Visitor&& visit = {}) {
+  return end_walk(space, walk, false, p, q, counts, visit, [](const Walk&, const SimplexId*) { return false; });
 }
 
 }  // namespace detail

@@ -151,8 +151,8 @@ int travel() {
   constexpr std::size_t batches = 21;
   using Clock = std::chrono::steady_clock;
   Traveller walk;
-  walk.stage = TravelStage::on_way;
-  walk.walk.end = WalkEnd::wall;
+  walk.step.stage = StepStage::on_way;
+  walk.step.walk.end = WalkEnd::wall;
   const std::vector<Traveller> leaving(batch, walk);
   std::vector<Traveller> come;
   come.reserve(batch);

@@ -84,7 +84,7 @@ class BothWaysInThePlane {
     std::vector<detail::VertexNumbers> vertices;
     for (const ParticleState& s : states) vertices.push_back(detail::vertex_numbers(complex_, s.at()));
     std::vector<detail::StepStatus> taken(particle_count);
-    std::vector<PartialStep> partial;
+    std::vector<StepState> partial;
     Counters counters;
     const StepOptions options;
     const bool portable = tally.steps / particle_count % 2 == 1;
@@ -104,7 +104,7 @@ class BothWaysInThePlane {
         ParticleState state = states_[i];
         ContactList resumed;
         Counters counts;
-        stepper.resume(i, state, weights, targets[i], resumed, counts, partial[taken[i]]);
+        stepper.step(i, state, weights, targets[i], resumed, counts, partial[taken[i]]);
         if (!same_bits(state, next)) return fmt::format("particle {}: another state, resumed", i);
         if (!same_contacts(resumed, contacts)) return fmt::format("particle {}: other contacts, resumed", i);
         if (!same_counts(counts, own)) return fmt::format("particle {}: other counts, resumed", i);

@@ -34,7 +34,7 @@ class OneStep {
     std::vector<ParticleState> states = {state_};
     const std::vector<Vec3> targets = {target};
     std::vector<detail::StepStatus> status(1);
-    std::vector<PartialStep> partial;
+    std::vector<StepState> partial;
     Counters counters;
     detail::step_batch({&complex_, true, true, StepOptions{}},
                        {states, vertices_, caches_.from(0), targets, status, partial}, counters);

@@ -65,7 +65,7 @@ TEST(FilteredBatch, ShapesWithoutATable) {
   }
   std::vector<ParticleState> taken = states;
   std::vector<detail::StepStatus> status(starts.size());
-  std::vector<PartialStep> partial;
+  std::vector<StepState> partial;
   Counters counters;
   detail::step_batch({&complex, false, false, StepOptions{}}, {taken, vertices, {}, targets, status, partial},
                      counters);
@@ -78,7 +78,7 @@ TEST(FilteredBatch, ShapesWithoutATable) {
     Counters counts;
     ASSERT_NE(status[i], detail::step_untouched) << i;
     if (status[i] != detail::step_complete)
-      stepper.resume(static_cast<std::uint32_t>(i), taken[i], unused, targets[i], contacts, counts, partial[status[i]]);
+      stepper.step(static_cast<std::uint32_t>(i), taken[i], unused, targets[i], contacts, counts, partial[status[i]]);
     stepper.step(static_cast<std::uint32_t>(i), states[i], unused, targets[i], contacts, counts);
     EXPECT_TRUE(same_bits(taken[i], states[i])) << i;
   }

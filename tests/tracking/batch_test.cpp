@@ -131,7 +131,7 @@ class BothWays {
     std::vector<detail::VertexNumbers> vertices;
     detail::SimplexCache caches;
     std::vector<detail::StepStatus> taken;
-    std::vector<PartialStep> partial;
+    std::vector<StepState> partial;
     Counters counters;
   };
 
@@ -150,12 +150,12 @@ class BothWays {
     return one;
   }
 
-  static void count_parts(const PartialStep& partial, Tally& tally) {
-    if (partial.parts == 1) return;
+  static void count_parts(const StepState& partial, Tally& tally) {
+    if (partial.slices == 1) return;
     const bool at_wall = partial.walk.end == WalkEnd::wall;
     tally.in_parts += at_wall ? 1 : 0;
     tally.carried_on += partial.carried_on ? 1 : 0;
-    tally.carried_often += partial.carried_on && partial.parts > 2 ? 1 : 0;
+    tally.carried_often += partial.carried_on && partial.slices > 2 ? 1 : 0;
     tally.parts_on += at_wall ? 0 : 1;
   }
 
@@ -170,12 +170,12 @@ class BothWays {
   // Resumes a partial step, and compares it with the scalar step.
   std::string compare_resumed(const Stepper& stepper, const Filtered& batch, const ScalarStep& one, std::size_t i,
                               const Vec3& target, bool& landed) const {
-    const PartialStep& partial = batch.partial[batch.taken[i]];
+    const StepState& partial = batch.partial[batch.taken[i]];
     ParticleState state = states_[i];
     Weights unused{};
     ContactList resumed;
     Counters counts;
-    stepper.resume(static_cast<std::uint32_t>(i), state, unused, target, resumed, counts, partial);
+    stepper.step(static_cast<std::uint32_t>(i), state, unused, target, resumed, counts, partial);
     if (!same_bits(state, one.state)) return "another state, resumed";
     if (!same(resumed, one.contacts)) return "other contacts, resumed";
     if (!same_but_tests(counts, one.counters)) return "other counts, resumed";

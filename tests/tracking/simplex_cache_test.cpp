@@ -54,7 +54,7 @@ detail::SimplexCacheEntry cache_at(const CellComplex& complex, SimplexId at, con
   caches.resize(1);
   const std::vector<Vec3> targets = {p};
   std::vector<detail::StepStatus> taken(1);
-  std::vector<PartialStep> partial;
+  std::vector<StepState> partial;
   Counters counters;
   detail::step_batch({&complex, false, false, StepOptions{}},
                      {states, vertices, caches.from(0), targets, taken, partial}, counters);

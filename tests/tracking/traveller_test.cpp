@@ -12,9 +12,9 @@ namespace dartcast::traveller_test {
 
 class RandomTravellers {
  public:
-  Traveller next(TravelStage stage, std::size_t walls, std::uint8_t ties) {
+  Traveller next(StepStage stage, std::size_t walls, std::uint8_t ties) {
     Traveller t;
-    t.stage = stage;
+    t.step.stage = stage;
     t.home = number();
     t.state.position = vector();
     t.state.cell = Cell(number());
@@ -23,16 +23,16 @@ class RandomTravellers {
     for (unsigned i = 0; i < t.state.touching_count; ++i) t.state.touching[i] = {Cell(number()), 3};
     t.state.held = number() % 2 == 0;
     for (double& w : t.weights) w = real();
-    t.result = {number() % 2 == 0, Cell(number()), number() % 2 == 0, vector()};
-    if (stage == TravelStage::done) return t;
-    t.contact_count = static_cast<std::uint32_t>(walls);
-    t.together = walls > 0 ? number() : 0;
-    t.last_time = walls > 0 ? real() : -1.0;
-    t.interval = {real(), real(), vector()};
-    t.parts = 1 + number() % 2 * 7;
-    t.part = t.parts > 1 ? 3 : 1;
-    if (t.parts > 1) t.step_target = vector();
-    t.target = vector();
+    t.step.result = {number() % 2 == 0, Cell(number()), number() % 2 == 0, vector()};
+    if (stage == StepStage::done) return t;
+    t.step.contact_count = static_cast<std::uint32_t>(walls);
+    t.step.first_here = walls > 0 ? number() : 0;
+    t.step.last_time = walls > 0 ? real() : -1.0;
+    t.step.interval = {real(), real(), vector()};
+    t.step.slices = 1 + number() % 2 * 7;
+    t.step.slice = t.step.slices > 1 ? 3 : 1;
+    if (t.step.slices > 1) t.step.target = vector();
+    t.step.slice_target = vector();
     for (std::size_t i = 0; i < walls; ++i) {
       CarriedWall& w = t.walls.emplace_back();
       w.hit.triangle = 2;
@@ -41,16 +41,16 @@ class RandomTravellers {
       for (Vec3& v : w.before) v = vector();
       for (Vec3& v : w.now) v = vector();
     }
-    if (stage == TravelStage::on_way) put_walk(t, ties);
+    if (stage == StepStage::on_way) put_walk(t, ties);
     return t;
   }
 
  private:
   void put_walk(Traveller& t, std::uint8_t ties) {
-    t.walk.end = number() % 2 == 0 ? WalkEnd::wall : WalkEnd::arrived;
-    t.walk.simplex = {Cell(number()), 4};
-    t.walk.zeros = 5;
-    t.walk.wall_facet = 2;
+    t.step.walk.end = number() % 2 == 0 ? WalkEnd::wall : WalkEnd::arrived;
+    t.step.walk.simplex = {Cell(number()), 4};
+    t.step.walk.zeros = 5;
+    t.step.walk.wall_facet = 2;
     t.restarted = number() % 2 == 0;
     t.ties.count = ties;
     for (unsigned i = 0; i < ties; ++i) t.ties.corner[i] = vector();
@@ -68,11 +68,11 @@ std::string bytes_of(const Traveller& t) {
 }
 
 void expect_same_walk(const Traveller& come, const Traveller& sent) {
-  EXPECT_EQ(come.walk.end, sent.walk.end);
-  EXPECT_EQ(come.walk.simplex, sent.walk.simplex);
-  EXPECT_EQ(come.walk.wall_simplex, sent.walk.simplex);
-  EXPECT_EQ(come.walk.zeros, sent.walk.zeros);
-  EXPECT_EQ(come.walk.wall_facet, sent.walk.wall_facet);
+  EXPECT_EQ(come.step.walk.end, sent.step.walk.end);
+  EXPECT_EQ(come.step.walk.simplex, sent.step.walk.simplex);
+  EXPECT_EQ(come.step.walk.wall_simplex, sent.step.walk.simplex);
+  EXPECT_EQ(come.step.walk.zeros, sent.step.walk.zeros);
+  EXPECT_EQ(come.step.walk.wall_facet, sent.step.walk.wall_facet);
   EXPECT_EQ(come.restarted, sent.restarted);
   EXPECT_EQ(come.ties.count, sent.ties.count);
   EXPECT_EQ(come.ties.corner, sent.ties.corner);
@@ -81,7 +81,7 @@ void expect_same_walk(const Traveller& come, const Traveller& sent) {
 TEST(Traveller, ComesBackFromItsBytes) {
   RandomTravellers travellers;
   for (int round = 0; round < 1000; ++round) {
-    for (const TravelStage stage : {TravelStage::walk, TravelStage::on_way, TravelStage::carry, TravelStage::done}) {
+    for (const StepStage stage : {StepStage::walk, StepStage::on_way, StepStage::carry, StepStage::done}) {
       const Traveller sent =
           travellers.next(stage, static_cast<std::size_t>(round % 4), static_cast<std::uint8_t>(round % 4));
       const std::string bytes = bytes_of(sent);
@@ -89,30 +89,30 @@ TEST(Traveller, ComesBackFromItsBytes) {
       Traveller come;
       unpack(in, come);
       EXPECT_TRUE(in.at_end());
-      EXPECT_EQ(come.stage, sent.stage);
+      EXPECT_EQ(come.step.stage, sent.step.stage);
       EXPECT_EQ(come.state.position, sent.state.position);
       EXPECT_EQ(come.state.at(), sent.state.at());
       EXPECT_EQ(come.state.held, sent.state.held);
       EXPECT_EQ(come.state.touching_count, sent.state.touching_count);
       EXPECT_EQ(come.state.touching, sent.state.touching);
       if (sent.state.held) EXPECT_EQ(come.weights, sent.weights);
-      const bool has_result = sent.result.held || sent.result.stopped;
-      EXPECT_EQ(come.result.held, sent.result.held);
-      EXPECT_EQ(come.result.stopped, sent.result.stopped);
-      if (has_result) EXPECT_EQ(come.result.invalid_cell, sent.result.invalid_cell);
-      if (has_result) EXPECT_EQ(come.result.unused, sent.result.unused);
-      if (stage == TravelStage::done) continue;
+      const bool has_result = sent.step.result.held || sent.step.result.stopped;
+      EXPECT_EQ(come.step.result.held, sent.step.result.held);
+      EXPECT_EQ(come.step.result.stopped, sent.step.result.stopped);
+      if (has_result) EXPECT_EQ(come.step.result.invalid_cell, sent.step.result.invalid_cell);
+      if (has_result) EXPECT_EQ(come.step.result.unused, sent.step.result.unused);
+      if (stage == StepStage::done) continue;
       EXPECT_EQ(come.home, sent.home);
-      EXPECT_EQ(come.contact_count, sent.contact_count);
-      EXPECT_EQ(come.together, sent.together);
-      EXPECT_EQ(come.last_time, sent.last_time);
-      EXPECT_EQ(come.interval.begin, sent.interval.begin);
-      EXPECT_EQ(come.interval.end, sent.interval.end);
-      EXPECT_EQ(come.interval.later, sent.interval.later);
-      EXPECT_EQ(come.part, sent.part);
-      EXPECT_EQ(come.parts, sent.parts);
-      EXPECT_EQ(come.target, sent.target);
-      EXPECT_EQ(come.step_target, sent.step_target);
+      EXPECT_EQ(come.step.contact_count, sent.step.contact_count);
+      EXPECT_EQ(come.step.first_here, sent.step.first_here);
+      EXPECT_EQ(come.step.last_time, sent.step.last_time);
+      EXPECT_EQ(come.step.interval.begin, sent.step.interval.begin);
+      EXPECT_EQ(come.step.interval.end, sent.step.interval.end);
+      EXPECT_EQ(come.step.interval.later, sent.step.interval.later);
+      EXPECT_EQ(come.step.slice, sent.step.slice);
+      EXPECT_EQ(come.step.slices, sent.step.slices);
+      EXPECT_EQ(come.step.slice_target, sent.step.slice_target);
+      EXPECT_EQ(come.step.target, sent.step.target);
       ASSERT_EQ(come.walls.size(), sent.walls.size());
       for (std::size_t i = 0; i < sent.walls.size(); ++i) {
         EXPECT_EQ(come.walls[i].hit.triangle, sent.walls[i].hit.triangle);
@@ -121,7 +121,7 @@ TEST(Traveller, ComesBackFromItsBytes) {
         EXPECT_EQ(come.walls[i].before, sent.walls[i].before);
         EXPECT_EQ(come.walls[i].now, sent.walls[i].now);
       }
-      if (stage == TravelStage::on_way) expect_same_walk(come, sent);
+      if (stage == StepStage::on_way) expect_same_walk(come, sent);
     }
   }
 }
@@ -130,12 +130,12 @@ TEST(Traveller, ComesBackFromItsBytes) {
 TEST(Traveller, IsSmall) {
   RandomTravellers travellers;
   for (int round = 0; round < 100; ++round) {
-    Traveller t = travellers.next(TravelStage::on_way, 0, 3);
+    Traveller t = travellers.next(StepStage::on_way, 0, 3);
     t.state.held = false;
-    t.result = {};
+    t.step.result = {};
     EXPECT_LE(bytes_of(t).size(), 299U);
   }
-  EXPECT_LE(bytes_of(travellers.next(TravelStage::done, 0, 0)).size(), 170U);
+  EXPECT_LE(bytes_of(travellers.next(StepStage::done, 0, 0)).size(), 170U);
 }
 
 }  // namespace dartcast::traveller_test

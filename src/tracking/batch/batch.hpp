@@ -3,7 +3,7 @@
 // The batch makes no decision of its own. Where a sign is not proved, or anything else is out of the ordinary, it
 // defers the step to Stepper (tracking/step.hpp) and leaves it as it was. Both have the same result wherever both take
 // a step: ties between facets are broken by the walk's own functions. The batch walks up to the first wall; Stepper
-// continues from there. Where a step is split, the batch walks its first part, if the target is far; and where particles
+// continues from there. Where a step is split, the batch walks its first slice, if the target is far; and where particles
 // stop at walls, it says where the mesh carries them by the end. Only the counts may differ. Walks to far targets ask
 // other questions. And where rounding carries a particle out of its simplex, Stepper puts it back and walks from there,
 // though its target is inside.
@@ -20,7 +20,7 @@
 #include "dartcast/step.hpp"
 #include "tracking/batch/particle_cache.hpp"
 #include "tracking/batch/simplex_cache.hpp"
-#include "tracking/step.hpp"
+#include "tracking/step_state.hpp"
 
 namespace dartcast::detail {
 
@@ -37,7 +37,7 @@ struct BatchScene {
 };
 
 /// How much of a step the batch did: all, nothing, or, where the step has come to its first wall or to the end of the
-/// first of its parts, the number of its PartialStep; its state is unchanged then.
+/// first of its slices, the number of its StepState; its state is unchanged then.
 using StepStatus = std::uint16_t;
 inline constexpr StepStatus step_complete = 0xffff;
 inline constexpr StepStatus step_untouched = 0xfffe;
@@ -50,8 +50,8 @@ struct BatchSteps {
   /// written for each step taken.
   SimplexCacheSpan caches;
   std::span<const Vec3> targets;
-  std::span<StepStatus> status;       ///< out
-  std::vector<PartialStep>& partial;  ///< out; empty before
+  std::span<StepStatus> status;     ///< out
+  std::vector<StepState>& partial;  ///< out; empty before
 };
 
 /// Takes the steps that it can, and counts them. The same bits with every instruction set. Preconditions: as for

@@ -9,7 +9,7 @@
 #include "tracking/batch/batch_caches.inl"
 #include "tracking/batch/batch_simplex.inl"
 #include "tracking/contact_geometry.hpp"
-#include "tracking/step.hpp"
+#include "tracking/step_state.hpp"
 
 DARTCAST_BEGIN_KERNEL
 namespace dartcast::detail::DARTCAST_SIMD {
@@ -46,18 +46,18 @@ struct AtWall {
 // Four of these.
 struct AtWalls {
   const AtWall* walls[4];
-  const PartialStep* steps;
+  const StepState* steps;
 
   const AtWall* operator[](unsigned l) const { return walls[l]; }
-  [[nodiscard]] const PartialStep& step(unsigned l) const { return steps[walls[l]->partial]; }
+  [[nodiscard]] const StepState& step(unsigned l) const { return steps[walls[l]->partial]; }
   [[nodiscard]] Index4 particles() const {
     return {{walls[0]->particle, walls[1]->particle, walls[2]->particle, walls[3]->particle}};
   }
-  [[nodiscard]] Double4 parts() const {
-    return Double4{double(step(0).parts), double(step(1).parts), double(step(2).parts), double(step(3).parts)};
+  [[nodiscard]] Double4 slices() const {
+    return Double4{double(step(0).slices), double(step(1).slices), double(step(2).slices), double(step(3).slices)};
   }
   // The times at which the vertices are where the walks find them.
-  [[nodiscard]] Double4 times() const { return 1.0 / parts(); }
+  [[nodiscard]] Double4 times() const { return 1.0 / slices(); }
   [[nodiscard]] [[gnu::always_inline]] Corners4 simplices(const Vec3* positions) const {
     return Corners4(positions, walls[0]->corners, walls[1]->corners, walls[2]->corners, walls[3]->corners);
   }
@@ -83,7 +83,8 @@ class WallImpact4 {
     const Double4 square = dot(gradient_, gradient_);
     normal_ = gradient_ * (1.0 / root(square));
     known = (square > 0x1p-600) & (square < 0x1p+600);
-    pass(load_vec3x4(at.step(0).from, at.step(1).from, at.step(2).from, at.step(3).from), targets);
+    pass(load_vec3x4(at.step(0).walk_start, at.step(1).walk_start, at.step(2).walk_start, at.step(3).walk_start),
+         targets);
   }
 
   // As proved_inside(). The point is next to the wall's facet.

@@ -114,7 +114,7 @@ inline bool Batch<kind>::end_part(std::uint32_t l, bool at_wall) {
   }
   status_[part.particle] = number;
   partial_.emplace_back(part.start_point(), walk, TestCounts{cursor.tests, cursor.exact});
-  partial_.back().parts = part.parts;
+  partial_.back().slices = part.parts;
   return false;
 }
 

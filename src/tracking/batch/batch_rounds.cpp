@@ -1,8 +1,8 @@
 // Steps in rounds: all steps wait at their next contacts, one call answers these, and the steps continue.
 //
 // The phases, in order:
-// 1. The chunks of the batch, where each deferred step goes to its first contact (step_to_contact()).
-// 2. For each round: ask for the answers, and continue each step up to its next contact (step_on()).
+// 1. The chunks of the batch, where each deferred step goes to its first contact.
+// 2. For each round: ask for the answers, and continue each step up to its next contact.
 // 3. Sort what the rounds have reported by particle.
 #include <algorithm>
 #include <utility>
@@ -61,36 +61,17 @@ BatchStepper::BatchStepper(const CellComplex& complex, bool moved, Threads threa
       rounds_(&respond),
       stepper_(complex, moved, options, no_response) {}
 
-// A step that has come to its end, or to a contact.
-void BatchStepper::add(const BatchParticles& particles, const StepResult& result, const PausedStep& step,
-                       std::uint32_t particle, ChunkSteps& steps) const {
-  if (step.waits) return steps.waiting.push_back(step);
-  if (result.held) steps.report.held.push_back({particle, result.invalid_cell});
-  if (result.stopped) steps.report.stopped.push_back({particle, result.unused});
-  particles.cache.place(particle, complex_, particles.states[particle]);
-}
-
-void BatchStepper::step_to_contact(const BatchParticles& particles, std::uint32_t particle, const Vec3& target,
-                                   const PartialStep* partial, ChunkSteps& steps) const {
-  PausedStep step;
-  const StepResult result =
-      stepper_.step_to_contact(particle, particles.states[particle], particles.weights[particle], target,
-                               steps.report.contacts, steps.report.counters, partial, step);
-  add(particles, result, step, particle, steps);
-}
-
-ChunkSteps BatchStepper::step_on(const BatchParticles& particles, std::span<const PausedStep> waiting,
-                                 const ContactList& met, std::span<const AfterContact> after) const {
+ChunkSteps BatchStepper::answer(const BatchParticles& particles, std::span<const StepState> waiting,
+                                const ContactList& met, std::span<const AfterContact> after) const {
   std::vector<ChunkSteps> chunks(chunk_count(waiting.size(), continued_at_once));
   parallel_for(waiting.size(), continued_at_once, threads_, [&](std::size_t begin, std::size_t end) {
     ChunkSteps& steps = chunks[begin / continued_at_once];
     for (std::size_t i = begin; i < end; ++i) {
-      PausedStep step = waiting[i];
-      const std::uint32_t particle = step.particle;
-      const StepResult result =
-          stepper_.step_on(met, met.contacts[i], after[i], particles.states[particle], particles.weights[particle],
-                           steps.report.contacts, steps.report.counters, step);
-      add(particles, result, step, particle, steps);
+      StepState step = waiting[i];
+      const std::uint32_t p = step.particle;
+      stepper_.answer(met, met.contacts[i], after[i], step,
+                      {particles.states[p], particles.weights[p], steps.report.contacts, steps.report.counters});
+      add(particles, step, steps);
     }
   });
   return joined(std::move(chunks));
@@ -103,7 +84,7 @@ StepReport BatchStepper::answer_in_rounds(const BatchParticles& particles, Chunk
   while (!steps.waiting.empty()) {
     std::vector<AfterContact> after(steps.waiting.size());
     (*rounds_)(rounds.back(), after);
-    steps = step_on(particles, steps.waiting, rounds.back(), after);
+    steps = answer(particles, steps.waiting, rounds.back(), after);
     merge_by_particle(report.held, steps.report.held);
     merge_by_particle(report.stopped, steps.report.stopped);
     report.counters += steps.report.counters;

@@ -86,7 +86,7 @@ void BatchStepper::step_chunk(const BatchScene& scene, const BatchParticles& par
   const std::size_t size = end - begin;
   ParticleCache& cache = particles.cache;
   std::array<StepStatus, chunk> status;
-  std::vector<PartialStep> partial;
+  std::vector<StepState> partial;
   partial.reserve(size);
   const BatchSteps batch{particles.states.subspan(begin, size), std::span(cache.vertices_).subspan(begin, size),
                          cache.simplices_.from(begin),          targets.subspan(begin, size),
@@ -99,22 +99,14 @@ void BatchStepper::step_chunk(const BatchScene& scene, const BatchParticles& par
   report.contacts.walls.reserve(3 * partial.size());  // at a corner there are several
   report.stopped.reserve(partial.size());
   for (std::size_t i = next_deferred(batch.status, 0); i < size; i = next_deferred(batch.status, i + 1)) {
-    const auto particle = static_cast<std::uint32_t>(begin + i);
-    if (rounds_ != nullptr) {
-      const PartialStep* const partial_step = status[i] == step_untouched ? nullptr : &partial[status[i]];
-      step_to_contact(particles, particle, batch.targets[i], partial_step, steps);
-      continue;
-    }
-    ParticleState& state = batch.states[i];
-    Weights& weights = particles.weights[particle];
-    const bool whole = status[i] == step_untouched;
-    const StepResult result =
-        whole ? stepper_.step(particle, state, weights, batch.targets[i], report.contacts, report.counters)
-              : stepper_.resume(particle, state, weights, batch.targets[i], report.contacts, report.counters,
-                                partial[status[i]]);
-    if (result.held) report.held.push_back({particle, result.invalid_cell});
-    if (result.stopped) report.stopped.push_back({particle, result.unused});
-    if (whole || !partial[status[i]].stays(state)) cache.place(particle, complex_, state);
+    StepState& step = status[i] == step_untouched ? partial.emplace_back() : partial[status[i]];
+    step.begin(static_cast<std::uint32_t>(begin + i), batch.states[i], batch.targets[i], report.contacts);
+    const SteppedParticle particle{batch.states[i], particles.weights[begin + i], report.contacts, report.counters};
+    if (rounds_ != nullptr)
+      stepper_.run_to_contact(step, particle);
+    else
+      stepper_.run(step, particle);
+    add(particles, step, steps);
   }
 }
 

@@ -29,8 +29,8 @@ struct BatchParticles {
 /// Steps of consecutive particles.
 struct ChunkSteps {
   StepReport report;
-  std::vector<PausedStep>
-      waiting;  ///< one at each of the report's contacts; or none, where these are not to be answered
+  /// One at each of the report's contacts; or none, where these are not to be answered.
+  std::vector<StepState> waiting;
 };
 
 /// A set of particles that grows while it steps: particles come from other ranks.
@@ -51,7 +51,7 @@ class PartTraffic {
   [[nodiscard]] virtual const PartCells& cells() const = 0;
   /// Sends steps away, each to the rank Traveller::to, and returns those that come here, in an order that depends on the
   /// ranks alone. Where no rank has sent any, `over` becomes true. The data that users keep of a particle go along:
-  /// Traveller::particle is its index here. Those that come get the next indices, in their order. Collective.
+  /// StepState::particle is its index here. Those that come get the next indices, in their order. Collective.
   virtual std::vector<Traveller> exchange(std::vector<Traveller> leaving, bool& over) = 0;
 };
 
@@ -100,14 +100,18 @@ class BatchStepper {
   [[nodiscard]] BatchScene scene_of(ParticleCache& cache, std::size_t count) const;
   void step_chunk(const BatchScene& scene, const BatchParticles& particles, std::span<const Vec3> targets,
                   std::size_t begin, std::size_t end, ChunkSteps& steps) const;
+  // A step that has come to its end, or to a contact.
+  void add(const BatchParticles& particles, const StepState& step, ChunkSteps& steps) const {
+    if (step.waits()) return steps.waiting.push_back(step);
+    const std::uint32_t i = step.particle;
+    if (step.result.held) steps.report.held.push_back({i, step.result.invalid_cell});
+    if (step.result.stopped) steps.report.stopped.push_back({i, step.result.unused});
+    if (!step.stays(particles.states[i])) particles.cache.place(i, complex_, particles.states[i]);
+  }
   // In rounds.
-  void step_to_contact(const BatchParticles& particles, std::uint32_t particle, const Vec3& target,
-                       const PartialStep* partial, ChunkSteps& steps) const;
-  [[nodiscard]] ChunkSteps step_on(const BatchParticles& particles, std::span<const PausedStep> waiting,
-                                   const ContactList& met, std::span<const AfterContact> after) const;
+  [[nodiscard]] ChunkSteps answer(const BatchParticles& particles, std::span<const StepState> waiting,
+                                  const ContactList& met, std::span<const AfterContact> after) const;
   [[nodiscard]] StepReport answer_in_rounds(const BatchParticles& particles, ChunkSteps steps) const;
-  void add(const BatchParticles& particles, const StepResult& result, const PausedStep& step, std::uint32_t particle,
-           ChunkSteps& steps) const;
 
   const CellComplex& complex_;
   bool moved_;

@@ -233,7 +233,7 @@ class Batch {
   CacheFlags* flags_;
   const Vec3* targets_;
   StepStatus* status_;
-  std::vector<PartialStep>& partial_;
+  std::vector<StepState>& partial_;
   Counters& counters_;
 
   // Scratch of the block. In bit sets there is one bit per particle.

@@ -59,7 +59,7 @@ inline void Batch<kind>::compute_impacts() {
 template <CacheKind kind>
 [[gnu::always_inline]] inline Vec3x4 Batch<kind>::targets_at(const AtWalls& at) const {
   if constexpr (!moved) return targets_of(at.particles());
-  const auto target = [&](unsigned l) { return target_of(at[l]->particle, at.step(l).parts); };
+  const auto target = [&](unsigned l) { return target_of(at[l]->particle, at.step(l).slices); };
   return load_vec3x4(target(0), target(1), target(2), target(3));
 }
 template <CacheKind kind>
@@ -76,20 +76,20 @@ template <CacheKind kind>
     return at.simplices(now_);
 }
 
-// Particles that stop at walls in the first of several parts: the vertices carry them along to the end of the step, as in
-// MovingStep::in_parts(). Returns a mask of those for which doubles prove all that is asked there.
+// Particles that stop at walls in the first of several slices: the vertices carry them along to the end of the step, as in
+// StepRun::take_slices(). Returns a mask of those for which doubles prove all that is asked there.
 template <CacheKind kind>
 inline Mask4 Batch<kind>::carry_on(const AtWalls& at, WallImpact4& impacts) const {
-  const Double4 parts = at.parts();
-  Mask4 carried = impacts.known & (parts > 1.0);
+  const Double4 slices = at.slices();
+  Mask4 carried = impacts.known & (slices > 1.0);
   if (!stops_ || !any(carried)) return Mask4{};
   const Corners4 from = at.simplices(before_);
   const Corners4 to = at.simplices(now_);
   Vec3x4 position = impacts.position;
   BatchDeterminants there = impacts.there;
-  for (double part = 2.0; any(carried & (parts >= part)); ++part) {
-    const Mask4 goes_on = parts >= part;
-    const Corners4 v = between(from, to, part / parts);
+  for (double slice = 2.0; any(carried & (slices >= slice)); ++slice) {
+    const Mask4 goes_on = slices >= slice;
+    const Corners4 v = between(from, to, slice / slices);
     const Vec3x4 x = carry_along(there.value, v);
     const BatchDeterminants d(v, x);
     carried &= ~goes_on | (there.proves_coordinates() & d.all_positive());
@@ -131,7 +131,7 @@ inline void Batch<kind>::compute_impact4(std::uint32_t k) {
   for (std::uint32_t l = 0; l < 4 && k + l < at_wall_count_; ++l) {
     if (impacts.known[l] == 0) continue;
     const std::uint32_t i = at[l]->particle;
-    PartialStep& partial = partial_[at[l]->partial];
+    StepState& partial = partial_[at[l]->partial];
     partial.impact = impacts.of(l);
     if constexpr (moved) {
       partial.left_behind = left_behind[l] != 0;

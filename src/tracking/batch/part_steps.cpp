@@ -81,7 +81,7 @@ class PartSteps {
                    std::size_t end, ContactList& met) {
     const std::size_t size = end - begin;
     std::vector<StepStatus> status(size);
-    std::vector<PartialStep> partial;
+    std::vector<StepState> partial;
     partial.reserve(size);
     ParticleCache& cache = particles_.cache;
     const BatchSteps steps{std::span(particles_.states).subspan(begin, size),
@@ -99,16 +99,19 @@ class PartSteps {
         particles_.states[p] = before[p];
         particles_.weights[p] = weights_before[p];
       }
+      if (complete) --report_.counters.particle_steps;  // the batch has counted it
       const bool untouched = complete || status[i] == step_untouched;
-      const PartialStep* const so_far =
-          untouched || !cells_.is_own(partial[status[i]].walk.simplex.cell) ? nullptr : &partial[status[i]];
-      TravellingPause pause;
-      const TravelResult result =
-          stepper_.start(static_cast<std::uint32_t>(p), particles_.states[p], particles_.weights[p], targets[p], met,
-                         report_.counters, so_far, pause);
-      if (complete) --report_.counters.particle_steps;  // the batch has counted it, too
-      take(result, std::move(pause), static_cast<std::uint32_t>(p), met, waiting_);
+      Traveller t;
+      t.home = cells_.rank();
+      if (!untouched && cells_.is_own(partial[status[i]].walk.simplex.cell)) t.step = partial[status[i]];
+      t.step.begin(static_cast<std::uint32_t>(p), particles_.states[p], targets[p], met);
+      stepper_.run(t, particle(p, met));
+      take(std::move(t), met, waiting_);
     }
+  }
+
+  [[nodiscard]] SteppedParticle particle(std::size_t p, ContactList& list) {
+    return {particles_.states[p], particles_.weights[p], list, report_.counters};
   }
 
   // Whether a step that the batch has ended may lie on walls that this rank does not know.
@@ -117,43 +120,36 @@ class PartSteps {
   }
 
   // A step that has come as far as it can, here and now.
-  void take(const TravelResult& result, TravellingPause pause, std::uint32_t particle, const ContactList& list,
-            std::vector<TravellingPause>& waiting) {
-    if (result.waits) {
-      ++met_[particle];
-      pause.contact = list.contacts.size() - 1;
-      waiting.push_back(std::move(pause));
+  void take(Traveller t, const ContactList& list, std::vector<Traveller>& waiting) {
+    const std::uint32_t p = t.step.particle;
+    if (t.step.waits()) {
+      ++met_[p];
+      t.contact = list.contacts.size() - 1;
+      waiting.push_back(std::move(t));
       return;
     }
-    const ParticleState& state = particles_.states[particle];
-    if (result.leaves) {
-      go(std::move(pause.traveller), particle);
-      return;
-    }
-    if (!state.cell.valid()) {  // it stays where it was, on another rank
-      Traveller& t = pause.traveller;
-      t.stage = TravelStage::done;
+    const bool done = t.step.stage == StepStage::done;
+    if (done && particles_.states[p].cell.valid()) return end(t.step);
+    if (done) {  // it stays where it was, on another rank
       t.to = t.home;
-      t.result = result.result;
-      t.result.invalid_cell = cells_.whole(t.result.invalid_cell);
-      go(std::move(t), particle);
-      return;
+      t.step.result.invalid_cell = cells_.whole(t.step.result.invalid_cell);
     }
-    note(result.result, particle);
-    particles_.cache.place(particle, complex_, state);
+    go(std::move(t));
   }
 
-  void go(Traveller traveller, std::uint32_t particle) {
-    traveller.particle = particle;
-    traveller.met = met_[particle];
-    traveller.weights = particles_.weights[particle];
-    gone_[particle] = 1;
-    leaving_.push_back(std::move(traveller));
+  void go(Traveller t) {
+    const std::uint32_t p = t.step.particle;
+    t.met = met_[p];
+    t.weights = particles_.weights[p];
+    gone_[p] = 1;
+    leaving_.push_back(std::move(t));
   }
 
-  void note(const StepResult& result, std::uint32_t particle) {
-    if (result.held) report_.held.push_back({particle, result.invalid_cell});
-    if (result.stopped) report_.stopped.push_back({particle, result.unused});
+  void end(const StepState& step) {
+    const std::uint32_t p = step.particle;
+    if (step.result.held) report_.held.push_back({p, step.result.invalid_cell});
+    if (step.result.stopped) report_.stopped.push_back({p, step.result.unused});
+    particles_.cache.place(p, complex_, particles_.states[p]);
   }
 
   // The contacts that wait are in the list of the last round, among those of particles that may not go on.
@@ -161,14 +157,12 @@ class PartSteps {
     while (!waiting_.empty()) {
       const ContactList& met = rounds_.back();
       ContactList next;
-      std::vector<TravellingPause> waiting;
-      for (TravellingPause& pause : waiting_) {
-        const std::uint32_t p = pause.step.particle;
-        const Contact& contact = met.contacts[pause.contact];
+      std::vector<Traveller> waiting;
+      for (Traveller& t : waiting_) {
+        const Contact& contact = met.contacts[t.contact];
         const AfterContact after = respond_(contact, met.walls_of(contact), met.earlier_walls_of(contact));
-        const TravelResult result = stepper_.answer(met, contact, after, particles_.states[p], particles_.weights[p],
-                                                    next, report_.counters, pause);
-        take(result, std::move(pause), p, next, waiting);
+        stepper_.answer(met, contact, after, t, particle(t.step.particle, next));
+        take(std::move(t), next, waiting);
       }
       waiting_ = std::move(waiting);
       rounds_.push_back(std::move(next));
@@ -179,21 +173,18 @@ class PartSteps {
     ContactList met;
     for (Traveller& t : come) {
       const auto p = static_cast<std::uint32_t>(particles_.states.size());
-      t.particle = p;
+      t.step.particle = p;
       particles_.states.push_back(state_here(cells_, t.state));
       particles_.weights.push_back(t.weights);
       gone_.push_back(0);
       met_.push_back(0);
       add_cache(t);
-      if (t.stage == TravelStage::done) {
-        arrive(t, p);
+      if (t.step.stage == StepStage::done) {
+        arrive(t);
         continue;
       }
-      TravellingPause pause;
-      pause.traveller = std::move(t);
-      const TravelResult result =
-          stepper_.go_on(particles_.states[p], particles_.weights[p], met, report_.counters, pause);
-      take(result, std::move(pause), p, met, waiting_);
+      stepper_.run(t, particle(p, met));
+      take(std::move(t), met, waiting_);
     }
     rounds_.push_back(std::move(met));
   }
@@ -205,18 +196,16 @@ class PartSteps {
     particles_.cache.add(complex_, here.valid() ? SimplexId{here, t.state.simplex} : any, t.state.position);
   }
 
-  void arrive(const Traveller& t, std::uint32_t p) {
-    const ParticleState& s = particles_.states[p];
+  void arrive(Traveller& t) {
+    const ParticleState& s = particles_.states[t.step.particle];
     const auto touching = std::span(s.touching).first(s.touching_count);
     const bool known = std::all_of(touching.begin(), touching.end(), [](const CellFace& f) { return f.cell.valid(); });
     if (!s.cell.valid() || !known)
       throw InternalError("a particle has come to a rank that does not have its cell " +
                           std::to_string(t.state.cell.value) +
                           " and the walls that it touches; please report it with the scene and the number of ranks");
-    StepResult result = t.result;
-    result.invalid_cell = cells_.here(result.invalid_cell);
-    note(result, p);
-    particles_.cache.place(p, complex_, s);
+    t.step.result.invalid_cell = cells_.here(t.step.result.invalid_cell);
+    end(t.step);
   }
 
   // Phase 3.
@@ -224,10 +213,11 @@ class PartSteps {
     for (std::uint32_t p = 0; p < particles_.states.size(); ++p) {
       if (gone_[p] != 0 || cells_.is_own(particles_.states[p].cell)) continue;
       Traveller t;
-      t.stage = TravelStage::done;
+      t.step.particle = p;
+      t.step.stage = StepStage::done;
       t.to = cells_.owner(particles_.states[p].cell);
       t.state = whole_state(cells_, particles_.states[p]);
-      go(std::move(t), p);
+      go(std::move(t));
     }
     bool over = false;
     take_in(traffic_.exchange(std::exchange(leaving_, {}), over));
@@ -266,7 +256,7 @@ class PartSteps {
   PartTraffic& traffic_;
   std::vector<std::uint8_t>& gone_;
   StepReport report_;
-  std::vector<TravellingPause> waiting_;  // one for each contact of the last round
+  std::vector<Traveller> waiting_;  // one for each contact of the last round
   std::vector<Traveller> leaving_;
   std::vector<ContactList> rounds_;
   std::vector<std::uint32_t> met_;  // contacts, by particle
