@@ -241,7 +241,7 @@ void find_wall_at_end(const CombinatorialMap& map, Walk& walk) {
 
 /// Ends a walk that has come to its first wall, or to the closed simplex that holds q. `restarted`: it has begun anew, from
 /// a wall that p lies on. Where `leaves(walk, start)` holds, it is returned as it is; start: of a walk that begins anew here,
-/// else null.
+/// else null. always_inline: g++ 12 would call it from both.
 template <class Positions, std::size_t N, class Visitor, class Leaves>
 [[gnu::always_inline]] inline Walk end_walk(const Space<Positions, N>& space, Walk walk, bool restarted, const Vec3& p,
                                             const Vec3& q, TestCounts& counts, Visitor& visit, const Leaves& leaves) {
