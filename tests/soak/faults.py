@@ -26,8 +26,8 @@ FAULTS = {
     "batch: -0 is not flushed": ("src/tracking/batch/batch_kernel.inl",
                                  "(reinterpret_cast<Mask4>(numbers) == splat_bits(0))", "(m == 0.0)"),
     "contacts: rounded places": ("src/tracking/step_run.hpp",
-                                 "  if (w.at_end) return run.state.put(w.simplex, contact.point);",
-                                 "  return run.state.put(w.at_end ? w.simplex : w.wall_simplex, contact.point);"),
+                                 "    if (w.at_end) return state_.put(w.simplex, contact.point);",
+                                 "    return state_.put(w.at_end ? w.simplex : w.wall_simplex, contact.point);"),
     "contacts: a call that throws keeps what it did": ("src/environment/environment.cpp",
                                                        "respond && !detail::is_library_response(respond);",
                                                        "respond && false;"),
@@ -48,8 +48,8 @@ FAULTS = {
     "checkpoint: without velocities": ("src/simulation/particle_system_checkpoint.cpp",
                                        "velocities_.push_back(p.velocity);", "velocities_.emplace_back();"),
     "ranks: walls where they were": ("src/tracking/batch/travelling_step.cpp",
-                                     "wall.now[i] = complex_->positions()[v];",
-                                     "wall.now[i] = complex_->previous_positions()[v];"),
+                                     "wall.now[i] = complex_.positions()[v];",
+                                     "wall.now[i] = complex_.previous_positions()[v];"),
 }
 
 
