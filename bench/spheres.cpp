@@ -11,7 +11,7 @@
 #include "bench/timing.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/simulation.hpp"
-#include "simulation/simulation_parts.hpp"
+#include "simulation/simulation_view.hpp"
 
 namespace dartcast::bench {
 
@@ -67,7 +67,7 @@ void time_both_searches(const Simulation& flow, double dt, SphereRow& row) {
 }
 
 const Collider& collider_of(const Simulation& simulation) {
-  return simulation.parts().particles.sphere_contacts().collider();
+  return view_of(simulation).particles.sphere_contacts().collider();
 }
 
 }  // namespace

@@ -73,6 +73,8 @@ COMPETITORS = re.compile(r"^(Bullet|LinearMath/|bt[A-Z]|embree)")
 # Code that must stay independent of the predicates of tracking, so that it can check them.
 INDEPENDENT = re.compile(r"(^tests/oracle/|/audit[a-z_]*\.[ch]pp$)")
 PREDICATES = re.compile(r"^(dartcast/predicates\.hpp|predicates/)")
+# The parts of a simulation belong to its room. All others see them through simulation/simulation_view.hpp.
+PARTS = "simulation/simulation_parts.hpp"
 
 STANDARD = re.compile(r"^([a-z_]+|sys/[a-z]+\.h|(fcntl|unistd|immintrin)\.h)$")
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
@@ -105,6 +107,8 @@ def problems_of(path: pathlib.Path) -> list[str]:
     includes = INCLUDE.findall(path.read_text(encoding="utf-8"))
     found = [f"{name}: includes {h}, which it is there to check"
              for h in includes if INDEPENDENT.search(name) and PREDICATES.match(h)]
+    if PARTS in includes and not name.startswith("src/simulation/"):
+        found.append(f"{name}: includes {PARTS}; include simulation/simulation_view.hpp instead")
     if not name.startswith("bench/"):
         found += [f"{name}: includes {h}, which only bench/ may" for h in includes if COMPETITORS.match(h)]
     if name.startswith("examples/"):

@@ -381,7 +381,7 @@ class Simulation {
   /// The hash of every particle that there has been. Particles that left count with their last state.
   [[nodiscard]] StateHash state_hash() const;
 
-  struct Parts;  ///< for this class and the library's writers: simulation/simulation_parts.hpp
+  struct Parts;  ///< for the library: simulation/simulation_view.hpp shows them
   [[nodiscard]] const Parts& parts() const { return *parts_; }
 
  private:

@@ -16,7 +16,7 @@
 #include "output/wall_faces.hpp"
 #include "report/recorded.hpp"
 #include "simulation/gathered_step.hpp"
-#include "simulation/simulation_parts.hpp"
+#include "simulation/simulation_view.hpp"
 
 namespace dartcast {
 
@@ -85,7 +85,7 @@ std::vector<RecordedPoint> recorded(std::span<const Vec3> points, const Recorded
 
 // A body's skin as triangles where it has one, else its particles.
 RecordedSolid recorded_body(const Simulation& simulation, std::size_t b, const RecordedHeader& header) {
-  const BodiesComponent& component = simulation.parts().bodies;
+  const BodiesComponent& component = view_of(simulation).bodies;
   const Bodies& bodies = *component.bodies();
   const std::size_t count = bodies.particle_count(b);
   const std::span<const Vec3> positions = bodies.positions().subspan(bodies.first_particle(b), count);
@@ -110,17 +110,17 @@ RecordedSolid recorded_body(const Simulation& simulation, std::size_t b, const R
 
 std::vector<RecordedSolid> recorded_solids(const Simulation& simulation, const RecordedHeader& header) {
   std::vector<RecordedSolid> solids;
-  const BodiesComponent& bodies = simulation.parts().bodies;
+  const BodiesComponent& bodies = view_of(simulation).bodies;
   for (std::size_t b = 0; bodies.bodies() && b < bodies.bodies()->size(); ++b)
     solids.push_back(recorded_body(simulation, b, header));
   for (std::size_t i = 0; i < simulation.catheter_count(); ++i) {
-    const CatheterScene& scene = simulation.parts().catheters.scenes()[i];
+    const CatheterScene& scene = view_of(simulation).catheters.scenes()[i];
     solids.push_back({scene.name, SolidKind::catheter, 0.0F, {}, recorded(simulation.catheter(i).points(), header)});
   }
   const SolidSet* tools = simulation.solids();
   for (std::size_t i = 0; tools != nullptr && i < tools->size(); ++i) {
-    const SolidMesh& mesh = simulation.parts().solids.mesh(i);
-    RecordedSolid solid{simulation.parts().solids.name(i), SolidKind::body, 0.0F, {}, {}};
+    const SolidMesh& mesh = view_of(simulation).solids.mesh(i);
+    RecordedSolid solid{view_of(simulation).solids.name(i), SolidKind::body, 0.0F, {}, {}};
     if (mesh.triangles.empty()) solid.kind = SolidKind::catheter;
     solid.points = recorded(vertices_of(*tools, i), header);
     for (const auto& t : mesh.triangles) solid.triangles.insert(solid.triangles.end(), t.begin(), t.end());
@@ -208,7 +208,7 @@ const WallHits& ReportRecording::hits(const Simulation& simulation) const {
 void ReportRecording::count_hits() {
   if (!counts_hits_ || counted_ == simulation_.steps()) return;
   counted_ = simulation_.steps();
-  own_hits_.add(simulation_.environment(), simulation_.parts().particles.last_step().report.contacts);
+  own_hits_.add(simulation_.environment(), view_of(simulation_).particles.last_step().report.contacts);
 }
 
 void ReportRecording::update_after_edit(const Environment& environment) {

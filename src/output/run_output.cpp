@@ -18,7 +18,7 @@
 #include "dartcast/report.hpp"
 #include "formats/file_write.hpp"
 #include "output/particle_frame.hpp"
-#include "simulation/simulation_parts.hpp"
+#include "simulation/simulation_view.hpp"
 #include "simulation/timer.hpp"
 
 namespace dartcast {
@@ -119,7 +119,7 @@ void RunOutput::open(MeshSource mesh, const Simulation& simulation) {
   if (folder().empty()) return;
   const ScopeTimer timer(summary_.seconds_write);
   if (recording_options_.environment_pieces > 1)
-    record_.emplace(own_mesh(*simulation.parts().part_mesh));
+    record_.emplace(own_mesh(*view_of(simulation).part_mesh));
   else if (!record_ && share_.is_first())
     record_.emplace(std::move(std::get<MeshData>(mesh)));
   if (share_.is_first()) open_files(simulation);
@@ -183,9 +183,9 @@ void RunOutput::add_frame(const Simulation& simulation, bool last) {
 
 // The record is of the cells that the rank has now.
 void RunOutput::follow_balance(const Simulation& simulation) {
-  if (recording_options_.environment_pieces == 1 || balanced_ == simulation.parts().balanced) return;
-  balanced_ = simulation.parts().balanced;
-  EnvironmentRecord record(own_mesh(*simulation.parts().part_mesh));
+  if (recording_options_.environment_pieces == 1 || balanced_ == view_of(simulation).balanced) return;
+  balanced_ = view_of(simulation).balanced;
+  EnvironmentRecord record(own_mesh(*view_of(simulation).part_mesh));
   if (recording_)
     recording_->set_environment(std::move(record));
   else

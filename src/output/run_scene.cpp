@@ -17,7 +17,7 @@
 #include "output/run_output.hpp"
 #include "scene/scene_mesh.hpp"
 #include "simulation/particle_share.hpp"
-#include "simulation/simulation_parts.hpp"
+#include "simulation/simulation_view.hpp"
 
 namespace dartcast {
 
@@ -47,7 +47,7 @@ void describe(const Environment& environment, Summary& summary) {
 
 // Where ranks have parts of the environment: the cells of each count once, and so does what belongs to the lowest of them.
 void describe_parts(const Simulation& simulation, Summary& summary) {
-  const PartCells& part = simulation.parts().part->cells();
+  const PartCells& part = view_of(simulation).part->cells();
   const CombinatorialMap& map = simulation.environment().map();
   std::array<std::uint64_t, 5> sums{};
   std::vector<Cell> lowest(simulation.environment().positions().size());
@@ -224,7 +224,7 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   const std::unique_ptr<Simulation> simulation =
       with_mesh_name(scene.environment.mesh, [&] { return make_simulation(loaded.scene, output, options); });
   describe(simulation->environment(), summary);
-  if (simulation->parts().part) describe_parts(*simulation, summary);
+  if (view_of(*simulation).part) describe_parts(*simulation, summary);
   summary.seconds_locate = locate.seconds();
   output.open(std::move(loaded.scene.environment.mesh), *simulation);
   if (options.audit && !options.folder.empty())

@@ -14,7 +14,7 @@
 #include "formats/vtp_write.hpp"
 #include "output/camera_path_file.hpp"
 #include "output/frame_files.hpp"
-#include "simulation/simulation_parts.hpp"
+#include "simulation/simulation_view.hpp"
 
 namespace dartcast {
 
@@ -75,7 +75,7 @@ void SolidsRecording::add_step(const Simulation& simulation) {
 }
 
 void SolidsRecording::add_bodies(const Simulation& simulation) {
-  const BodiesComponent& component = simulation.parts().bodies;
+  const BodiesComponent& component = view_of(simulation).bodies;
   const Bodies& bodies = *component.bodies();
   const BodiesStep& last = simulation.bodies_step();
   std::vector<std::uint64_t> contacts(bodies.size());
@@ -93,7 +93,7 @@ void SolidsRecording::add_bodies(const Simulation& simulation) {
 }
 
 void SolidsRecording::add_catheters(const Simulation& simulation) {
-  const CathetersComponent& component = simulation.parts().catheters;
+  const CathetersComponent& component = view_of(simulation).catheters;
   for (std::size_t i = 0; i < component.catheters().size(); ++i) {
     const Catheter& c = component.catheters()[i];
     const CatheterStep& s = simulation.catheter_step(i);
@@ -121,14 +121,14 @@ void SolidsRecording::add_solids(const Simulation& simulation) {
 // Those of tools, then those of the surfaces of bodies, then those of catheters.
 void SolidsRecording::add_solid_contacts(const Simulation& simulation) {
   for (const SolidContact& c : simulation.solids_step().contacts)
-    add_solid_contact(simulation, simulation.parts().solids.name(c.solid), c);
-  const BodiesComponent& bodies = simulation.parts().bodies;
+    add_solid_contact(simulation, view_of(simulation).solids.name(c.solid), c);
+  const BodiesComponent& bodies = view_of(simulation).bodies;
   if (bodies.bodies() && bodies.last_step().gone.empty()) {
     for (const SolidContact& c : bodies.last_step().edges) add_solid_contact(simulation, bodies.name(c.solid), c);
   }
   for (std::size_t i = 0; i < simulation.catheter_count(); ++i) {
     for (const SolidContact& c : simulation.catheter(i).contacts())
-      add_solid_contact(simulation, simulation.parts().catheters.scenes()[i].name, c);
+      add_solid_contact(simulation, view_of(simulation).catheters.scenes()[i].name, c);
   }
   solid_contacts_.send_many(writing_);
 }
@@ -144,21 +144,21 @@ void SolidsRecording::add_solid_contact(const Simulation& simulation, const std:
 
 void SolidsRecording::add_frame(const Simulation& simulation, std::span<const RecordingFrame> frames) {
   const std::uint64_t step = frames.back().step;
-  const BodiesComponent& bodies = simulation.parts().bodies;
+  const BodiesComponent& bodies = view_of(simulation).bodies;
   for (std::size_t b = 0; bodies.bodies() && b < bodies.bodies()->size(); ++b) {
     write_body(simulation, b, step);
     write_series(series("body", bodies.name(b)), frames);
     if (bodies.skin(b)) write_series(series("surface", bodies.name(b)), frames);
   }
   for (std::size_t i = 0; i < simulation.catheter_count(); ++i) {
-    const CatheterScene& scene = simulation.parts().catheters.scenes()[i];
+    const CatheterScene& scene = view_of(simulation).catheters.scenes()[i];
     write_catheter(simulation, i, step);
     write_series(series("catheter", scene.name), frames);
     if (scene.camera > 0.0) write_series(series("camera", scene.name), frames);
   }
   for (std::size_t i = 0; simulation.solids() != nullptr && i < simulation.solids()->size(); ++i) {
     write_solid(simulation, i, step);
-    write_series(series("solid", simulation.parts().solids.name(i)), frames);
+    write_series(series("solid", view_of(simulation).solids.name(i)), frames);
   }
 }
 
@@ -172,7 +172,7 @@ void SolidsRecording::write_series(const std::string& series, std::span<const Re
 }
 
 void SolidsRecording::write_body(const Simulation& simulation, std::size_t body, std::uint64_t step) const {
-  const BodiesComponent& component = simulation.parts().bodies;
+  const BodiesComponent& component = view_of(simulation).bodies;
   const Bodies& bodies = *component.bodies();
   const std::size_t first = bodies.first_particle(body);
   const std::size_t count = bodies.particle_count(body);
@@ -200,7 +200,7 @@ void SolidsRecording::write_body(const Simulation& simulation, std::size_t body,
 }
 
 void SolidsRecording::write_catheter(const Simulation& simulation, std::size_t i, std::uint64_t step) const {
-  const CatheterScene& scene = simulation.parts().catheters.scenes()[i];
+  const CatheterScene& scene = view_of(simulation).catheters.scenes()[i];
   const std::vector<Vec3> points = simulation.catheter(i).points();
   std::vector<Vec3> tangents;
   std::vector<Vec3> normals;
@@ -214,14 +214,11 @@ void SolidsRecording::write_catheter(const Simulation& simulation, std::size_t i
   file.add("normal", std::move(normals));
   write(series("catheter", scene.name), step, file.data());
   if (scene.camera == 0.0) return;
-  CameraPath path;  // empty where nothing is inserted: the list names a file for each frame
-  const std::vector<Vec3> inwards(points.rbegin(), points.rend());
-  if (points.size() >= 2) path = camera_path(simulation.parts().environment, inwards, {.spacing = scene.camera});
-  write(series("camera", scene.name), step, camera_path_data(path));
+  write(series("camera", scene.name), step, camera_path_data(view_of(simulation).catheters.camera_path(i)));
 }
 
 void SolidsRecording::write_solid(const Simulation& simulation, std::size_t i, std::uint64_t step) const {
-  const SolidMesh& mesh = simulation.parts().solids.mesh(i);
+  const SolidMesh& mesh = view_of(simulation).solids.mesh(i);
   VtpFile file(vertices_of(*simulation.solids(), i));
   if (mesh.triangles.empty()) {
     file.add_line();
@@ -234,7 +231,7 @@ void SolidsRecording::write_solid(const Simulation& simulation, std::size_t i, s
     }
     file.add_polygons(offsets, corners);
   }
-  write(series("solid", simulation.parts().solids.name(i)), step, file.data());
+  write(series("solid", view_of(simulation).solids.name(i)), step, file.data());
 }
 
 SolidsProgress SolidsRecording::progress() {

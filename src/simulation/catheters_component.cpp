@@ -94,4 +94,11 @@ std::vector<CatheterSummary> CathetersComponent::summaries() const {
   return all;
 }
 
+CameraPath CathetersComponent::camera_path(std::size_t i) const {
+  std::vector<Vec3> inwards = catheters_[i].points();
+  std::reverse(inwards.begin(), inwards.end());
+  if (inwards.size() < 2) return {};
+  return dartcast::camera_path(environment_, inwards, {.spacing = scenes_[i].camera});
+}
+
 }  // namespace dartcast

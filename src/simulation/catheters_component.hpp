@@ -36,6 +36,8 @@ class CathetersComponent final : public SimulationComponent {
   /// The last step of each.
   [[nodiscard]] std::span<const CatheterStep> last_steps() const { return last_; }
   [[nodiscard]] std::vector<CatheterSummary> summaries() const;
+  /// A camera's places along a catheter, from its entry inwards. Empty where nothing is inserted.
+  [[nodiscard]] CameraPath camera_path(std::size_t i) const;
 
  private:
   Environment& environment_;

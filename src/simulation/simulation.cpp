@@ -10,6 +10,7 @@
 #include "simulation/gathered_step.hpp"
 #include "simulation/simulation_parts.hpp"
 #include "simulation/simulation_state.hpp"
+#include "simulation/simulation_view.hpp"
 #include "simulation/timer.hpp"
 
 namespace dartcast {
@@ -231,5 +232,10 @@ const EventLog& Simulation::event_log() const { return parts_->events.log(); }
 std::vector<BodySummary> Simulation::body_summaries() const { return parts_->bodies.summaries(); }
 std::vector<CatheterSummary> Simulation::catheter_summaries() const { return parts_->catheters.summaries(); }
 std::vector<SolidSummary> Simulation::solid_summaries() const { return parts_->solids.summaries(); }
+
+SimulationView view_of(const Simulation& simulation) {
+  const Simulation::Parts& p = simulation.parts();
+  return {p.particles, p.solids, p.bodies, p.catheters, p.part.get(), p.part_mesh.get(), p.balanced};
+}
 
 }  // namespace dartcast

@@ -21,7 +21,7 @@
 #include "formats/file_text.hpp"
 #include "formats/point_file.hpp"
 #include "output/run_files.hpp"
-#include "simulation/simulation_parts.hpp"
+#include "simulation/simulation_view.hpp"
 #include "support/run_scenes.hpp"
 #include "support/sample_mesh.hpp"
 #include "support/thread_ranks.hpp"
@@ -369,7 +369,7 @@ TEST_F(RanksRun, ByCellsAreBalanced) {
       excess += static_cast<double>(ranks.size() * *std::max_element(count.begin(), count.end())) / all / 120.0;
     }
     EXPECT_LE(excess, 1.7);  // 3.4 where the cells stay
-    EXPECT_GE(simulation.parts().balanced, 3U);
+    EXPECT_GE(view_of(simulation).balanced, 3U);
   });
 }
 

@@ -12,8 +12,8 @@
 #include "dartcast/generators.hpp"
 #include "dartcast/scene.hpp"
 #include "dartcast/simulation.hpp"
-#include "simulation/simulation_parts.hpp"
 #include "simulation/simulation_state.hpp"
+#include "simulation/simulation_view.hpp"
 #include "support/thread_ranks.hpp"
 
 namespace dartcast::particle_set_test {
@@ -63,7 +63,7 @@ class Marked {
 
  private:
   // The library changes tables through its own functions alone.
-  ParticleTable& table() { return const_cast<ParticleTable&>(simulation.parts().particles.set().table); }
+  ParticleTable& table() { return const_cast<ParticleTable&>(view_of(simulation).particles.set().table); }
   std::span<double> marks() { return table()[mark_]; }
   double number(std::size_t i) { return static_cast<double>(simulation.ids()[i] + 1); }
 
@@ -100,8 +100,8 @@ TEST(ParticleSet, TakesANewColumnFromRankToRank) {
       marked.simulation.step();
       marked.expect_marks();
     }
-    EXPECT_GE(marked.simulation.parts().balanced, 1U);
-    std::uint64_t sent = marked.simulation.parts().part->traffic().sent;
+    EXPECT_GE(view_of(marked.simulation).balanced, 1U);
+    std::uint64_t sent = view_of(marked.simulation).part->traffic().sent;
     ranks.sum({&sent, 1});
     EXPECT_GT(sent, 20U);
   });

@@ -15,7 +15,7 @@
 #include "dartcast/mesh_part.hpp"
 #include "dartcast/simulation.hpp"
 #include "simulation/collectives.hpp"
-#include "simulation/simulation_parts.hpp"
+#include "simulation/simulation_view.hpp"
 #include "support/thread_ranks.hpp"
 #include "support/tier.hpp"
 
@@ -179,7 +179,7 @@ TEST(Plan, CountsTheExchangesOfARun) {
     Simulation simulation(scene, Threads{1}, &ranks, Partition::cells);
     simulation.step();  // cells may move before the first one
     constexpr int steps = 9;
-    const TrafficCounts before = simulation.parts().part->traffic();
+    const TrafficCounts before = view_of(simulation).part->traffic();
     ranks.gathers = ranks.broadcasts = ranks.exchanges = ranks.sums = 0.0;
     ranks.summed = 0.0;
     for (int s = 0; s < steps; ++s) {
@@ -189,7 +189,7 @@ TEST(Plan, CountsTheExchangesOfARun) {
       std::uint64_t stops = 0;  // of the loop around
       ranks.sum({&stops, 1});
     }
-    const TrafficCounts& traffic = simulation.parts().part->traffic();
+    const TrafficCounts& traffic = view_of(simulation).part->traffic();
     const auto rounds = static_cast<double>(traffic.rounds - before.rounds);
     EXPECT_EQ(ranks.exchanges, rounds);
     EXPECT_GE(rounds, steps);
