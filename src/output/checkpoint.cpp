@@ -296,9 +296,9 @@ void fields(Archive& a, StatisticsState& s) {
 }
 
 template <class Archive>
-void fields(Archive& a, StatisticsProgress& p) {
+void statistics_fields(Archive& a, FilesProgress& p) {
   values(a, p.planes_bytes, p.crossings_bytes, p.pathlines_bytes, p.interval_begin);
-  a.list(p.at_begin, [&](StatisticsProgress::Plane& plane) { values(a, plane.forward, plane.backward, plane.ages); });
+  a.list(p.at_begin, [&](FilesProgress::Plane& plane) { values(a, plane.forward, plane.backward, plane.ages); });
 }
 
 template <class Archive>
@@ -350,18 +350,18 @@ template <class Archive>
 void fields(Archive& a, Checkpoint& c) {
   fields(a, c.run);
   fields(a, c.simulation.particles);
-  values(a, c.recording.stats_bytes, c.recording.contacts_bytes);
-  a.list(c.recording.frames, [&](RecordingFrame& f) { values(a, f.step, f.time, f.pieces, f.environment_pieces); });
+  values(a, c.files.stats_bytes, c.files.contacts_bytes);
+  a.list(c.files.frames, [&](RecordingFrame& f) { values(a, f.step, f.time, f.pieces, f.environment_pieces); });
   fields(a, c.simulation.events);
   values(a, c.held, c.audited);
   a.list(c.parts, [&](std::uint64_t& sum) { a.value(sum); });
   fields(a, c.simulation.bodies);
   fields(a, c.simulation.catheters);
-  values(a, c.solids_recording.bodies_bytes, c.solids_recording.catheters_bytes, c.report_recording.bytes);
+  values(a, c.files.bodies_bytes, c.files.catheters_bytes, c.files.report_bytes);
   fields(a, c.simulation.solids);
-  values(a, c.solids_recording.solids_bytes, c.solids_recording.solid_contacts_bytes);
+  values(a, c.files.solids_bytes, c.files.solid_contacts_bytes);
   later_fields(a, c.simulation);
-  if (has_statistics(c.simulation.statistics)) fields(a, c.statistics_recording);
+  if (has_statistics(c.simulation.statistics)) statistics_fields(a, c.files);
 }
 
 void check_same(const RunIdentity& saved, const RunIdentity& run) {

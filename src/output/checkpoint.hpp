@@ -12,10 +12,7 @@
 #include "dartcast/mesh_data.hpp"
 #include "dartcast/mesh_part.hpp"
 #include "dartcast/ranks.hpp"
-#include "output/recording.hpp"
-#include "output/report_recording.hpp"
-#include "output/solids_recording.hpp"
-#include "output/statistics_recording.hpp"
+#include "output/recorder.hpp"
 #include "simulation/simulation_state.hpp"
 
 namespace dartcast {
@@ -34,13 +31,10 @@ RunIdentity run_identity(const std::string& scene_text, const MeshPart& part, Ra
 struct Checkpoint {
   RunIdentity run;
   SimulationState simulation;
-  RecordingProgress recording;
+  FilesProgress files;
   std::uint64_t held = 0;  ///< in the last step
   std::uint64_t audited = 0;
   std::vector<std::uint64_t> parts;  ///< digests of the files of the other ranks, which hold their particles
-  SolidsProgress solids_recording;
-  StatisticsProgress statistics_recording;
-  ReportProgress report_recording;
 };
 
 /// Writes the file beside its place and then puts it there: whenever a run is cut off, a whole checkpoint is left.

@@ -67,7 +67,9 @@ void remove_earlier_run(const fs::path& folder) {
   }
 }
 
-void remove_later_frames(const fs::path& folder, const std::set<std::uint64_t>& kept) {
+void remove_later_frames(const fs::path& folder, std::span<const RecordingFrame> frames) {
+  std::set<std::uint64_t> kept;
+  for (const RecordingFrame& frame : frames) kept.insert(frame.step);
   const std::vector<std::string> names = run_files(folder);
   for (const std::string& name : names) {
     if (name.ends_with(".pvd")) keep_in_pvd(folder / name, kept);
@@ -99,56 +101,45 @@ void make_output_folder(const fs::path& folder) {
   if (error) throw Error(fmt::format("{}: the folder cannot be made: {}", folder.string(), error.message()));
 }
 
-Recording::Recording(WritingThread& writing, Options options, EnvironmentRecord record, const std::string& scene_text)
-    : writing_(writing), options_(std::move(options)) {
-  const fs::path& folder = options_.folder;
-  check_output_folder(folder);
-  make_output_folder(folder);
-  remove_earlier_run(folder);
-  stats_ = RunTable(folder / "stats.csv",
-                    fmt::format("{}{}{}", stats_header, options_.surgery ? ",in_opened" : "", energy_header));
-  if (options_.contacts) contacts_ = RunTable(folder / "contacts.csv", contacts_header);
-  if (!scene_text.empty()) write_bytes(folder / "scene.toml", scene_text);
-  const bool in_frames = options_.changes || options_.environment_pieces > 1;
-  if (!in_frames) write_frame_file(writing_, folder / "environment.vtu", record.at_rest(), options_.compression);
-  if (in_frames) environment_ = std::move(record);
-}
-
-Recording::Recording(WritingThread& writing, Options options, EnvironmentRecord record,
-                     const RecordingProgress& progress)
-    : writing_(writing), options_(std::move(options)), frames_(progress.frames) {
-  stats_ = RunTable(options_.folder / "stats.csv", progress.stats_bytes);
-  if (options_.contacts) contacts_ = RunTable(options_.folder / "contacts.csv", progress.contacts_bytes);
-  if (options_.changes || options_.environment_pieces > 1) environment_ = std::move(record);
-  std::set<std::uint64_t> kept;
-  for (const RecordingFrame& frame : frames_) kept.insert(frame.step);
-  remove_later_frames(options_.folder, kept);
-}
-
-void Recording::update_after_edit(const Environment& environment) {
-  if (environment_) environment_->update_after_edit(environment);
-}
-
-void Recording::add_frame(const Simulation& simulation) {
-  const RecordingFrame frame{simulation.steps(), simulation.time(), options_.pieces, options_.environment_pieces};
-  const fs::path& folder = options_.folder;
-  const XmlDataSet particles = write_particles(writing_, folder, simulation, frame, 0, options_.compression);
-  if (frame.pieces > 1) write_index(writing_, folder, frame, "particles", ".vtp", frame.pieces, particles);
-  if (environment_ && shows_environment(options_, frame)) {
-    const XmlDataSet data =
-        write_environment(writing_, folder, simulation, *environment_, frame, 0, options_.compression);
-    if (frame.environment_pieces > 1)
-      write_index(writing_, folder, frame, "environment", ".vtu", frame.environment_pieces, data);
+Recording::Recording(const RunFolder& run, Options options, std::optional<EnvironmentRecord>& environment,
+                     const std::string& scene_text)
+    : Recorder(run), options_(options), environment_(environment) {
+  if (run.before == nullptr) {
+    check_output_folder(folder_);
+    make_output_folder(folder_);
+    remove_earlier_run(folder_);
   }
-  if (frames_.empty() || frames_.back().step != frame.step) frames_.push_back(frame);
-  write_lists();
+  stats_ =
+      run.table("stats.csv", fmt::format("{}{}{}", stats_header, options_.surgery ? ",in_opened" : "", energy_header),
+                &FilesProgress::stats_bytes);
+  if (options_.contacts) contacts_ = run.table("contacts.csv", contacts_header, &FilesProgress::contacts_bytes);
+  const bool in_frames = options_.changes || options_.environment_pieces > 1;
+  if (run.before != nullptr) {
+    remove_later_frames(folder_, run.before->frames);
+  } else {
+    if (!scene_text.empty()) write_bytes(folder_ / "scene.toml", scene_text);
+    if (!in_frames)
+      write_frame_file(writing_, folder_ / "environment.vtu", environment_->at_rest(), options_.compression);
+  }
+  if (!in_frames) environment_.reset();
+}
+
+void Recording::add_frame(const Simulation& simulation, std::span<const RecordingFrame> frames) {
+  const RecordingFrame& frame = frames.back();
+  const XmlDataSet particles = write_particles(writing_, folder_, simulation, frame, 0, options_.compression);
+  if (frame.pieces > 1) write_index(writing_, folder_, frame, "particles", ".vtp", frame.pieces, particles);
+  if (shows_environment(options_, frame)) {
+    const XmlDataSet data =
+        write_environment(writing_, folder_, simulation, *environment_, frame, 0, options_.compression);
+    if (frame.environment_pieces > 1)
+      write_index(writing_, folder_, frame, "environment", ".vtu", frame.environment_pieces, data);
+  }
+  write_lists(frames);
 }
 
 bool shows_environment(const Recording::Options& options, const RecordingFrame& frame) {
   return options.changes || (frame.environment_pieces > 1 && frame.step == 0);
 }
-
-void Recording::set_environment(EnvironmentRecord record) { environment_ = std::move(record); }
 
 XmlDataSet write_environment(WritingThread& writing, const fs::path& folder, const Simulation& simulation,
                              EnvironmentRecord& record, const RecordingFrame& frame, unsigned piece,
@@ -160,19 +151,19 @@ XmlDataSet write_environment(WritingThread& writing, const fs::path& folder, con
   return data;
 }
 
-void Recording::write_lists() const {
-  write_list(writing_, options_.folder / "particles.pvd", frames_, particle_frame_name);
-  if (options_.changes) return write_list(writing_, options_.folder / "environment.pvd", frames_, environment_name);
-  const RecordingFrame at_rest = frames_.empty() ? RecordingFrame{} : frames_.front();
-  write_list(writing_, options_.folder / "environment.pvd", {&at_rest, 1}, [](const RecordingFrame& f) {
+void Recording::write_lists(std::span<const RecordingFrame> frames) const {
+  write_list(writing_, folder_ / "particles.pvd", frames, particle_frame_name);
+  if (options_.changes) return write_list(writing_, folder_ / "environment.pvd", frames, environment_name);
+  write_list(writing_, folder_ / "environment.pvd", frames.first(1), [](const RecordingFrame& f) {
     return f.environment_pieces > 1 ? environment_name(f) : std::string("environment.vtu");
   });
 }
 
-RecordingProgress Recording::progress() {
+void Recording::save(FilesProgress& progress) {
   stats_.send(writing_);
   contacts_.send(writing_);
-  return {stats_.bytes(), contacts_.bytes(), frames_};
+  progress.stats_bytes = stats_.bytes();
+  progress.contacts_bytes = contacts_.bytes();
 }
 
 void Recording::add_step(const Simulation& simulation, const SimulationStep& step, const StepSums& sums) {

@@ -4,36 +4,19 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "dartcast/simulation.hpp"
 #include "output/environment_record.hpp"
-#include "output/run_files.hpp"
+#include "output/recorder.hpp"
 
 namespace dartcast {
 
-/// How far a recording has come: enough to go on with its files.
-struct RecordingProgress {
-  std::uint64_t stats_bytes = 0;
-  std::uint64_t contacts_bytes = 0;
-  std::vector<RecordingFrame> frames;
-};
-
-/// Sums over all ranks, after a step.
-struct StepSums {
-  std::uint64_t alive = 0;
-  SimulationEnergy energy;
-};
-
 /// Writes particles.pvd with a .vtp per frame, environment.pvd with a .vtu per frame (one where nothing changes),
 /// stats.csv, contacts.csv on request, and scene.toml. Where ranks share the particles, it is the first rank's, and a frame
-/// is made of the pieces that all have written. A thread writes what is added, in that order. Its errors are thrown
-/// by what adds next. The thread outlives this.
-class Recording {
+/// is made of the pieces that all have written.
+class Recording final : public Recorder {
  public:
   struct Options {
-    std::filesystem::path folder;
     bool changes = false;  ///< the environment: a frame of it at each time
     bool surgery = false;  ///< the table has a column for particles in opened cells
     bool contacts = false;
@@ -43,35 +26,25 @@ class Recording {
   };
 
   /// Makes the folder, or takes over one that is empty or holds an earlier run, whose files are removed. Throws Error,
-  /// nothing changed, where the folder holds anything else. `record`: of the environment at rest.
-  Recording(WritingThread& writing, Options options, EnvironmentRecord record, const std::string& scene_text);
+  /// nothing changed, where the folder holds anything else. `environment`: at rest; where frames show it, its owner lets
+  /// it follow edits and cells, and else it is taken.
+  ///
+  /// A run that goes on takes back what was written after its progress. `environment` has followed the edits so far.
+  Recording(const RunFolder& run, Options options, std::optional<EnvironmentRecord>& environment,
+            const std::string& scene_text);
 
-  /// Goes on with the files of an earlier run: what was written to them after `progress` is taken back. Throws Error
-  /// where a file is shorter than that. `record`: has followed the edits so far.
-  Recording(WritingThread& writing, Options options, EnvironmentRecord record, const RecordingProgress& progress);
-
-  /// Adds the particles, and the environment where it deforms, as they are now.
-  void add_frame(const Simulation& simulation);
-  /// Where ranks have parts of the environment: `record` is of other cells now.
-  void set_environment(EnvironmentRecord record);
-  /// To be called after each edit of the environment.
-  void update_after_edit(const Environment& environment);
-  /// Adds a step's row to stats.csv, and its contacts.
-  void add_step(const Simulation& simulation, const SimulationStep& step, const StepSums& sums);
-  [[nodiscard]] std::span<const RecordingFrame> frames() const { return frames_; }
-  /// Leaves the rows of the tables to the thread, and says how far all will have come then.
-  RecordingProgress progress();
+  void add_step(const Simulation& simulation, const SimulationStep& step, const StepSums& sums) override;
+  void add_frame(const Simulation& simulation, std::span<const RecordingFrame> frames) override;
+  void save(FilesProgress& progress) override;
 
  private:
-  void write_lists() const;
+  void write_lists(std::span<const RecordingFrame> frames) const;
   void write_contacts(const Simulation& simulation, const SimulationStep& step);
 
-  WritingThread& writing_;
   Options options_;
-  std::optional<EnvironmentRecord> environment_;  // where frames show it
+  std::optional<EnvironmentRecord>& environment_;
   RunTable stats_;
   RunTable contacts_;
-  std::vector<RecordingFrame> frames_;
 };
 
 /// Whether a frame has the environment: one that stands still and is in pieces is in the first.

@@ -137,28 +137,21 @@ std::string text_of(const EventReport& e) {
 
 }  // namespace
 
-ReportRecording::ReportRecording(WritingThread& writing, const fs::path& folder, const Scene& scene,
-                                 const Simulation& simulation)
-    : writing_(writing),
+ReportRecording::ReportRecording(const RunFolder& run, const Scene& scene, const Simulation& simulation, bool goes_on)
+    : Recorder(run),
       simulation_(simulation),
-      file_(folder / file_name, recorded_line),
+      file_(run.table(file_name, recorded_line, &FilesProgress::report_bytes)),
       counts_hits_(!simulation.statistics_options().hits),
       counted_(simulation.steps()) {
+  if (run.before != nullptr) {
+    restore(folder_ / file_name, simulation, goes_on);
+    return;
+  }
   header_.dimension = simulation.environment().map().dimension();
   header_.every = scene.output.every;
   header_.origin = middle_of(simulation.environment());
   file_.append(chunk_of(header_));
   add_arrivals(simulation, simulation.time());
-}
-
-ReportRecording::ReportRecording(WritingThread& writing, const fs::path& folder, const Simulation& simulation,
-                                 const ReportProgress& progress, bool goes_on)
-    : writing_(writing),
-      simulation_(simulation),
-      file_(folder / file_name, progress.bytes),
-      counts_hits_(!simulation.statistics_options().hits),
-      counted_(simulation.steps()) {
-  restore(folder / file_name, simulation, goes_on);
 }
 
 // Where the run goes on, a last frame off the schedule is cut off, and so are walls that came with it. Its hits count.
@@ -222,7 +215,7 @@ void ReportRecording::add_arrivals(const Simulation& simulation, double time) {
   file_.append(chunk_of(RecordedArrivals{time, ids_}));
 }
 
-void ReportRecording::add_step(const Simulation& simulation, const SimulationStep& step) {
+void ReportRecording::add_step(const Simulation& simulation, const SimulationStep& step, const StepSums& /*sums*/) {
   add_arrivals(simulation, simulation.time() - step.duration);
   const EventLog& log = simulation.event_log();
   for (; events_ < log.events.size(); ++events_) {
@@ -272,7 +265,8 @@ ReportView ReportRecording::next_view(const Simulation& simulation) {
   return {header_, stride_};
 }
 
-void ReportRecording::add_frame(const Simulation& simulation, RecordedFrame frame) {
+void ReportRecording::add_frame(const Simulation& simulation, std::span<const RecordingFrame> /*frames*/) {
+  RecordedFrame frame = reported_particles(simulation, next_view(simulation));
   const Environment& environment = simulation.environment();
   if (!has_walls_ || edits_ != environment.edit_count()) add_walls(simulation);
   frame.stride = stride_;
@@ -303,9 +297,9 @@ RecordedFrame reported_particles(const Simulation& simulation, const ReportView&
   return frame;
 }
 
-ReportProgress ReportRecording::progress() {
+void ReportRecording::save(FilesProgress& progress) {
   file_.send(writing_);
-  return {file_.bytes()};
+  progress.report_bytes = file_.bytes();
 }
 
 }  // namespace dartcast

@@ -3,20 +3,16 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include "dartcast/scene.hpp"
 #include "dartcast/simulation.hpp"
 #include "dartcast/statistics.hpp"
-#include "output/run_files.hpp"
+#include "output/recorder.hpp"
 #include "report/recorded.hpp"
 
 namespace dartcast {
-
-/// How far it has come: enough to go on.
-struct ReportProgress {
-  std::uint64_t bytes = 0;
-};
 
 /// Which particles a frame shows, and how points are kept.
 struct ReportView {
@@ -29,27 +25,20 @@ RecordedFrame reported_particles(const Simulation& simulation, const ReportView&
 
 /// Records particles whose id is a multiple of a stride: the smallest power of two with which at most 20,000 are left.
 /// It grows with the number of ids. Cost: some 30 bytes for each of these particles in each frame, 32 for each contact.
-class ReportRecording {
+class ReportRecording final : public Recorder {
  public:
-  /// A new file. The simulation outlives it.
-  ReportRecording(WritingThread& writing, const std::filesystem::path& folder, const Scene& scene,
-                  const Simulation& simulation);
-  /// Goes on with the file of an earlier run. `simulation`: as above, in the state of the checkpoint. `goes_on`: it has
-  /// steps to do.
-  ReportRecording(WritingThread& writing, const std::filesystem::path& folder, const Simulation& simulation,
-                  const ReportProgress& progress, bool goes_on);
+  /// The simulation outlives it, and is in the state that the run goes on from. `goes_on`: the run before has not done
+  /// all steps.
+  ReportRecording(const RunFolder& run, const Scene& scene, const Simulation& simulation, bool goes_on);
 
-  /// After each edit of the environment.
-  void update_after_edit(const Environment& environment);
-  /// After each step.
-  void add_step(const Simulation& simulation, const SimulationStep& step);
-  /// Which particles the next frame shows.
-  [[nodiscard]] ReportView next_view(const Simulation& simulation);
-  /// `frame`: with the particles of that view.
-  void add_frame(const Simulation& simulation, RecordedFrame frame);
-  ReportProgress progress();
+  void update_after_edit(const Environment& environment) override;
+  void add_step(const Simulation& simulation, const SimulationStep& step, const StepSums& sums) override;
+  /// Collective: the other ranks call reported_particles() with any view.
+  void add_frame(const Simulation& simulation, std::span<const RecordingFrame> frames) override;
+  void save(FilesProgress& progress) override;
 
  private:
+  [[nodiscard]] ReportView next_view(const Simulation& simulation);
   void add_arrivals(const Simulation& simulation, double time);
   void add_walls(const Simulation& simulation);
   [[nodiscard]] std::vector<RecordedPoint> wall_points(const Environment& environment) const;
@@ -58,7 +47,6 @@ class ReportRecording {
   void restore_hits(const Simulation& simulation, const RecordedFrame& frame);
   void count_hits();
 
-  WritingThread& writing_;
   const Simulation& simulation_;
   RunTable file_;
   RecordedHeader header_;

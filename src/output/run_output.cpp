@@ -18,6 +18,9 @@
 #include "dartcast/report.hpp"
 #include "formats/file_write.hpp"
 #include "output/particle_frame.hpp"
+#include "output/report_recording.hpp"
+#include "output/solids_recording.hpp"
+#include "output/statistics_recording.hpp"
 #include "simulation/simulation_view.hpp"
 #include "simulation/timer.hpp"
 
@@ -44,8 +47,8 @@ void remove_earlier_parts(const std::filesystem::path& folder, std::uint64_t ste
 
 RunOutput::RunOutput(const Scene& scene, const RunOptions& options, Summary& summary)
     : scene_(scene),
-      recording_options_{options.folder,
-                         summary.deforms || summary.surgery,
+      folder_(options.folder),
+      recording_options_{summary.deforms || summary.surgery,
                          summary.surgery.has_value(),
                          scene.output.contacts,
                          scene.output.compression,
@@ -76,7 +79,7 @@ void RunOutput::find_checkpoint(std::uint64_t steps) {
     throw Error(
         fmt::format("{}: {} steps are done already; ask for as many or more with --steps", folder().string(), done));
   goes_on_ = done < steps;
-  if (goes_on_) std::erase_if(found_->recording.frames, [&](const auto& f) { return !on_schedule(f.step); });
+  if (goes_on_) std::erase_if(found_->files.frames, [&](const auto& f) { return !on_schedule(f.step); });
 }
 
 // Only those particles stay that are now this rank's: the others need not fit into its memory.
@@ -110,9 +113,8 @@ void RunOutput::meet() const {
 }
 
 void RunOutput::update_after_edit(const Environment& environment) {
-  if (report_) report_->update_after_edit(environment);
-  if (recording_) return recording_->update_after_edit(environment);
   if (record_) record_->update_after_edit(environment);
+  for (const Clocked& c : recorders_) c.recorder->update_after_edit(environment);
 }
 
 void RunOutput::open(MeshSource mesh, const Simulation& simulation) {
@@ -131,71 +133,58 @@ void RunOutput::open_files(const Simulation& simulation) {
   make_output_folder(folder());
   lock_.take(folder());
   writing_ = std::make_unique<WritingThread>();
-  recording_ = found_
-                   ? std::make_unique<Recording>(*writing_, recording_options_, std::move(*record_), found_->recording)
-                   : std::make_unique<Recording>(*writing_, recording_options_, std::move(*record_), scene_.text);
-  solids_ = found_ ? std::make_unique<SolidsRecording>(*writing_, folder(), scene_, found_->solids_recording)
-                   : std::make_unique<SolidsRecording>(*writing_, folder(), scene_);
-  statistics_ = found_
-                    ? std::make_unique<StatisticsRecording>(*writing_, folder(), scene_, found_->statistics_recording)
-                    : std::make_unique<StatisticsRecording>(*writing_, folder(), scene_);
-  if (wants_report()) open_report(simulation);
-}
-
-void RunOutput::open_report(const Simulation& simulation) {
+  const RunFolder run{*writing_, folder(), found_ ? &found_->files : nullptr};
+  if (found_) frames_ = found_->files.frames;
+  double* const write = &summary_.seconds_write;
+  recorders_.push_back({write, std::make_unique<Recording>(run, recording_options_, record_, scene_.text)});
+  recorders_.push_back({write, std::make_unique<SolidsRecording>(run, scene_)});
+  recorders_.push_back({write, std::make_unique<StatisticsRecording>(run, scene_)});
+  if (!wants_report()) return;
   const ScopeTimer timer(summary_.seconds_report);
-  report_ = found_
-                ? std::make_unique<ReportRecording>(*writing_, folder(), simulation, found_->report_recording, goes_on_)
-                : std::make_unique<ReportRecording>(*writing_, folder(), scene_, simulation);
+  recorders_.push_back(
+      {&summary_.seconds_report, std::make_unique<ReportRecording>(run, scene_, simulation, goes_on_)});
 }
 
 void RunOutput::add_step(const Simulation& simulation, const SimulationStep& step) {
   if (folder().empty()) return;
+  StepSums sums;
   {
     const ScopeTimer timer(summary_.seconds_write);
-    const StepSums sums{simulation.alive(), simulation.energy()};
+    sums = {simulation.alive(), simulation.energy()};
     writing_->check();
-    if (!share_.is_first()) return;
-    recording_->add_step(simulation, step, sums);
-    solids_->add_step(simulation);
-    statistics_->add_step(simulation);
   }
-  if (!report_) return;
-  const ScopeTimer timer(summary_.seconds_report);
-  report_->add_step(simulation, step);
+  for (const Clocked& c : recorders_) {
+    const ScopeTimer timer(*c.seconds);
+    c.recorder->add_step(simulation, step, sums);
+  }
 }
 
 void RunOutput::add_frame(const Simulation& simulation, bool last) {
   if (folder().empty() || (!last && !on_schedule(simulation.steps()))) return;
   follow_balance(simulation);
-  if (wants_report()) {
-    const ScopeTimer timer(summary_.seconds_report);
-    const ReportView view = report_ ? report_->next_view(simulation) : ReportView();
-    RecordedFrame particles = reported_particles(simulation, view);
-    if (report_) report_->add_frame(simulation, std::move(particles));
-  }
-  const ScopeTimer timer(summary_.seconds_write);
-  if (share_.is_first())
-    write_frame(simulation);
-  else
-    write_part(simulation);
+  if (share_.is_first()) return write_frame(simulation);
+  write_part(simulation);
+  if (!wants_report()) return;
+  const ScopeTimer timer(summary_.seconds_report);
+  reported_particles(simulation, {});  // the first rank's recorder gathers them
 }
 
 // The record is of the cells that the rank has now.
 void RunOutput::follow_balance(const Simulation& simulation) {
   if (recording_options_.environment_pieces == 1 || balanced_ == view_of(simulation).balanced) return;
   balanced_ = view_of(simulation).balanced;
-  EnvironmentRecord record(own_mesh(*view_of(simulation).part_mesh));
-  if (recording_)
-    recording_->set_environment(std::move(record));
-  else
-    record_ = std::move(record);
+  record_.emplace(own_mesh(*view_of(simulation).part_mesh));
+}
+
+RecordingFrame RunOutput::frame_of(const Simulation& simulation) const {
+  return {simulation.steps(), simulation.time(), recording_options_.pieces, recording_options_.environment_pieces};
 }
 
 // A rank but the first: it goes on when its files are whole.
 void RunOutput::write_part(const Simulation& simulation) {
+  const ScopeTimer timer(summary_.seconds_write);
   const Recording::Options& o = recording_options_;
-  const RecordingFrame frame{simulation.steps(), simulation.time(), o.pieces, o.environment_pieces};
+  const RecordingFrame frame = frame_of(simulation);
   if (every_ > 0) {
     write_particles(*writing_, folder(), simulation, frame, ranks_->rank(), o.compression);
     if (frame.environment_pieces > 1 && shows_environment(o, frame))
@@ -214,6 +203,7 @@ void RunOutput::write_part(const Simulation& simulation) {
 // The digests of the other ranks' parts, which are then whole.
 std::vector<std::uint64_t> RunOutput::written_parts() const {
   if (share_.has_all()) return {};
+  const ScopeTimer timer(summary_.seconds_write);
   std::vector<std::uint64_t> digests;
   for (const std::string& bytes : ranks_->gather(std::string(sizeof(std::uint64_t), '\0')))
     digests.push_back(ByteReader(bytes).take<std::uint64_t>());
@@ -223,20 +213,26 @@ std::vector<std::uint64_t> RunOutput::written_parts() const {
 
 void RunOutput::write_frame(const Simulation& simulation) {
   std::vector<std::uint64_t> parts = written_parts();
-  if (every_ > 0) {
-    recording_->add_frame(simulation);
-    solids_->add_frame(simulation, recording_->frames());
-    statistics_->add_frame(simulation, recording_->frames());
-  }
-  if (on_schedule(simulation.steps())) statistics_->end_interval(simulation);
+  if (every_ > 0) record_frame(simulation);
+  const ScopeTimer timer(summary_.seconds_write);
+  FilesProgress files;
+  files.frames = frames_;
+  for (const Clocked& c : recorders_) c.recorder->save(files);
   const std::uint64_t audited = summary_.audit ? summary_.audit->checked : 0;
   auto checkpoint = std::make_shared<Checkpoint>(Checkpoint{
-      identity_, simulation.checkpoint().state(), recording_->progress(), summary_.held, audited, std::move(parts),
-      solids_->progress(), statistics_->progress(), report_ ? report_->progress() : ReportProgress{}});
+      identity_, simulation.checkpoint().state(), std::move(files), summary_.held, audited, std::move(parts)});
   writing_->add(checkpoint->simulation.particles.table.bytes(), [checkpoint, path = file()] {
     write_checkpoint(path, *checkpoint);
     remove_earlier_parts(path.parent_path(), checkpoint->simulation.particles.steps);
   });
+}
+
+void RunOutput::record_frame(const Simulation& simulation) {
+  frames_.push_back(frame_of(simulation));
+  for (const Clocked& c : recorders_) {
+    const ScopeTimer timer(*c.seconds);
+    c.recorder->add_frame(simulation, frames_);
+  }
 }
 
 void RunOutput::finish(const Simulation& simulation) {
@@ -248,15 +244,12 @@ void RunOutput::finish(const Simulation& simulation) {
 void RunOutput::finish_files(const Simulation& simulation) {
   {
     const ScopeTimer timer(summary_.seconds_write);
-    recording_->progress();
-    solids_->progress();
-    statistics_->finish(simulation);
-    if (report_) report_->progress();
+    for (const Clocked& c : recorders_) c.recorder->finish(simulation);
     writing_->finish();
   }
   summary_.seconds_writing_thread = writing_->seconds();
   write_summary();
-  if (report_) write_report_of_run();
+  if (wants_report()) write_report_of_run();
 }
 
 void RunOutput::write_summary() const {

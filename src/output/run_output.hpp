@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "dartcast/mesh_data.hpp"
 #include "dartcast/run.hpp"
@@ -12,11 +13,9 @@
 #include "dartcast/simulation.hpp"
 #include "output/checkpoint.hpp"
 #include "output/environment_record.hpp"
+#include "output/recorder.hpp"
 #include "output/recording.hpp"
-#include "output/report_recording.hpp"
 #include "output/run_lock.hpp"
-#include "output/solids_recording.hpp"
-#include "output/statistics_recording.hpp"
 #include "output/writing_thread.hpp"
 #include "simulation/particle_share.hpp"
 
@@ -48,7 +47,12 @@ class RunOutput {
   void finish(const Simulation& simulation);
 
  private:
-  [[nodiscard]] const std::filesystem::path& folder() const { return recording_options_.folder; }
+  struct Clocked {
+    double* seconds;  // that it takes
+    std::unique_ptr<Recorder> recorder;
+  };
+
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   [[nodiscard]] std::filesystem::path file() const { return folder() / "checkpoint.bin"; }
   [[nodiscard]] bool wants_report() const {
     return scene_.output.report && every_ > 0 && recording_options_.environment_pieces == 1;
@@ -58,15 +62,17 @@ class RunOutput {
   void keep_own(ParticleSystemState& state) const;
   void open_files(const Simulation& simulation);
   void follow_balance(const Simulation& simulation);
+  [[nodiscard]] RecordingFrame frame_of(const Simulation& simulation) const;
   void write_part(const Simulation& simulation);
   [[nodiscard]] std::vector<std::uint64_t> written_parts() const;
   void write_frame(const Simulation& simulation);
+  void record_frame(const Simulation& simulation);
   void finish_files(const Simulation& simulation);
-  void open_report(const Simulation& simulation);
   void write_summary() const;
   void write_report_of_run();
 
   const Scene& scene_;
+  std::filesystem::path folder_;
   Recording::Options recording_options_;
   std::uint64_t every_;
   bool resume_;
@@ -77,14 +83,12 @@ class RunOutput {
   Summary& summary_;
   RunIdentity identity_;
   RunLock lock_;
-  std::optional<EnvironmentRecord> record_;  // until the recording has it
+  std::optional<EnvironmentRecord> record_;  // of the cells that this rank has now; none: no later frame shows it
   std::uint64_t balanced_ = 0;               // how often cells had moved to other ranks when it was made
+  std::vector<RecordingFrame> frames_;       // on the first rank
   std::optional<Checkpoint> found_;
   std::unique_ptr<WritingThread> writing_;  // before what leaves files to it
-  std::unique_ptr<Recording> recording_;
-  std::unique_ptr<SolidsRecording> solids_;
-  std::unique_ptr<StatisticsRecording> statistics_;
-  std::unique_ptr<ReportRecording> report_;  // none: no report is wanted
+  std::vector<Clocked> recorders_;          // on the first rank
 };
 
 }  // namespace dartcast

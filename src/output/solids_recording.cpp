@@ -20,8 +20,6 @@ namespace dartcast {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr std::string_view bodies_header = "step,time,name,x,y,z,kinetic,potential,matching,contacts";
 constexpr std::string_view catheters_header =
     "step,time,name,inserted,turned,pushed,worst_segment,contacts,at_walls,held,tip_x,tip_y,tip_z";
@@ -50,24 +48,17 @@ bool lists_contacts(const Scene& scene) {
 
 }  // namespace
 
-SolidsRecording::SolidsRecording(WritingThread& writing, fs::path folder, const Scene& scene)
-    : writing_(writing), folder_(std::move(folder)), compression_(scene.output.compression) {
-  if (!scene.bodies.empty()) bodies_ = RunTable(folder_ / "bodies.csv", bodies_header);
-  if (!scene.catheters.empty()) catheters_ = RunTable(folder_ / "catheters.csv", catheters_header);
-  if (!scene.solids.empty()) solids_ = RunTable(folder_ / "solids.csv", solids_header);
-  if (lists_contacts(scene)) solid_contacts_ = RunTable(folder_ / "solid_contacts.csv", solid_contacts_header);
+SolidsRecording::SolidsRecording(const RunFolder& run, const Scene& scene)
+    : Recorder(run), compression_(scene.output.compression) {
+  if (!scene.bodies.empty()) bodies_ = run.table("bodies.csv", bodies_header, &FilesProgress::bodies_bytes);
+  if (!scene.catheters.empty())
+    catheters_ = run.table("catheters.csv", catheters_header, &FilesProgress::catheters_bytes);
+  if (!scene.solids.empty()) solids_ = run.table("solids.csv", solids_header, &FilesProgress::solids_bytes);
+  if (lists_contacts(scene))
+    solid_contacts_ = run.table("solid_contacts.csv", solid_contacts_header, &FilesProgress::solid_contacts_bytes);
 }
 
-SolidsRecording::SolidsRecording(WritingThread& writing, fs::path folder, const Scene& scene,
-                                 const SolidsProgress& progress)
-    : writing_(writing), folder_(std::move(folder)), compression_(scene.output.compression) {
-  if (!scene.bodies.empty()) bodies_ = RunTable(folder_ / "bodies.csv", progress.bodies_bytes);
-  if (!scene.catheters.empty()) catheters_ = RunTable(folder_ / "catheters.csv", progress.catheters_bytes);
-  if (!scene.solids.empty()) solids_ = RunTable(folder_ / "solids.csv", progress.solids_bytes);
-  if (lists_contacts(scene)) solid_contacts_ = RunTable(folder_ / "solid_contacts.csv", progress.solid_contacts_bytes);
-}
-
-void SolidsRecording::add_step(const Simulation& simulation) {
+void SolidsRecording::add_step(const Simulation& simulation, const SimulationStep& /*step*/, const StepSums& /*sums*/) {
   if (bodies_.is_open()) add_bodies(simulation);
   if (catheters_.is_open()) add_catheters(simulation);
   if (solids_.is_open()) add_solids(simulation);
@@ -234,12 +225,15 @@ void SolidsRecording::write_solid(const Simulation& simulation, std::size_t i, s
   write(series("solid", view_of(simulation).solids.name(i)), step, file.data());
 }
 
-SolidsProgress SolidsRecording::progress() {
+void SolidsRecording::save(FilesProgress& progress) {
   bodies_.send(writing_);
   catheters_.send(writing_);
   solids_.send(writing_);
   solid_contacts_.send(writing_);
-  return {bodies_.bytes(), catheters_.bytes(), solids_.bytes(), solid_contacts_.bytes()};
+  progress.bodies_bytes = bodies_.bytes();
+  progress.catheters_bytes = catheters_.bytes();
+  progress.solids_bytes = solids_.bytes();
+  progress.solid_contacts_bytes = solid_contacts_.bytes();
 }
 
 }  // namespace dartcast

@@ -9,38 +9,22 @@
 #include "dartcast/scene.hpp"
 #include "dartcast/simulation.hpp"
 #include "formats/xml_write.hpp"
-#include "output/run_files.hpp"
-#include "output/writing_thread.hpp"
+#include "output/recorder.hpp"
 
 namespace dartcast {
-
-/// How far it has come: enough to go on with its files.
-struct SolidsProgress {
-  std::uint64_t bodies_bytes = 0;
-  std::uint64_t catheters_bytes = 0;
-  std::uint64_t solids_bytes = 0;
-  std::uint64_t solid_contacts_bytes = 0;
-};
 
 /// For each body there is a series of its particles (body_NAME_000010.vtp, body_NAME.pvd) and of the surface that follows
 /// them (surface_NAME_...). For each catheter there are its points (catheter_NAME_...) and, where the scene wants them, a
 /// camera's places along it (camera_NAME_...). For each solid there are its vertices and faces (solid_NAME_...).
 /// bodies.csv, catheters.csv and solids.csv have a row per step and body, catheter or solid. solid_contacts.csv has their
-/// contacts, where the scene wants contacts. A thread writes what is added, in that order. Its errors are thrown by what adds next. The thread outlives
-/// this.
-class SolidsRecording {
+/// contacts, where the scene wants contacts.
+class SolidsRecording final : public Recorder {
  public:
-  /// The folder is there, and belongs to the run.
-  SolidsRecording(WritingThread& writing, std::filesystem::path folder, const Scene& scene);
-  /// Goes on with the files of an earlier run. Throws Error where a table is shorter than it was.
-  SolidsRecording(WritingThread& writing, std::filesystem::path folder, const Scene& scene,
-                  const SolidsProgress& progress);
+  SolidsRecording(const RunFolder& run, const Scene& scene);
 
-  void add_step(const Simulation& simulation);
-  /// `frames`: of the run, this one the last of them.
-  void add_frame(const Simulation& simulation, std::span<const RecordingFrame> frames);
-  /// Leaves the rows of the tables to the thread, and says how far they will have come then.
-  SolidsProgress progress();
+  void add_step(const Simulation& simulation, const SimulationStep& step, const StepSums& sums) override;
+  void add_frame(const Simulation& simulation, std::span<const RecordingFrame> frames) override;
+  void save(FilesProgress& progress) override;
 
  private:
   void add_bodies(const Simulation& simulation);
@@ -55,8 +39,6 @@ class SolidsRecording {
   void write(const std::string& series, std::uint64_t step, const XmlDataSet& data) const;
   void write_series(const std::string& series, std::span<const RecordingFrame> frames) const;
 
-  WritingThread& writing_;
-  std::filesystem::path folder_;
   Compression compression_;
   RunTable bodies_;
   RunTable catheters_;

@@ -23,34 +23,24 @@ std::string walls_name(const RecordingFrame& frame) { return frame_name("walls",
 
 }  // namespace
 
-StatisticsRecording::StatisticsRecording(WritingThread& writing, std::filesystem::path folder, const Scene& scene)
-    : writing_(writing),
-      folder_(std::move(folder)),
+StatisticsRecording::StatisticsRecording(const RunFolder& run, const Scene& scene)
+    : Recorder(run),
+      every_(scene.output.every),
       compression_(scene.output.compression),
       scene_(scene.statistics),
       at_begin_(scene.statistics.options.planes.size()) {
   const StatisticsOptions& options = scene_.options;
-  if (!options.planes.empty()) planes_ = RunTable(folder_ / "planes.csv", planes_header);
-  if (scene_.crossings) crossings_ = RunTable(folder_ / "crossings.csv", crossings_header);
-  if (options.pathlines()) pathlines_ = RunTable(folder_ / "pathlines.bin", pathlines_header);
-}
-
-StatisticsRecording::StatisticsRecording(WritingThread& writing, std::filesystem::path folder, const Scene& scene,
-                                         const StatisticsProgress& progress)
-    : writing_(writing),
-      folder_(std::move(folder)),
-      compression_(scene.output.compression),
-      scene_(scene.statistics),
-      interval_begin_(progress.interval_begin),
-      at_begin_(progress.at_begin) {
-  const StatisticsOptions& options = scene_.options;
-  if (!options.planes.empty()) planes_ = RunTable(folder_ / "planes.csv", progress.planes_bytes);
-  if (scene_.crossings) crossings_ = RunTable(folder_ / "crossings.csv", progress.crossings_bytes);
-  if (options.pathlines()) pathlines_ = RunTable(folder_ / "pathlines.bin", progress.pathlines_bytes);
+  if (!options.planes.empty()) planes_ = run.table("planes.csv", planes_header, &FilesProgress::planes_bytes);
+  if (scene_.crossings) crossings_ = run.table("crossings.csv", crossings_header, &FilesProgress::crossings_bytes);
+  if (options.pathlines()) pathlines_ = run.table("pathlines.bin", pathlines_header, &FilesProgress::pathlines_bytes);
+  if (run.before == nullptr) return;
+  interval_begin_ = run.before->interval_begin;
+  at_begin_ = run.before->at_begin;
   std::filesystem::remove(folder_ / "pathlines.vtp");
 }
 
-void StatisticsRecording::add_step(const Simulation& simulation) {
+void StatisticsRecording::add_step(const Simulation& simulation, const SimulationStep& /*step*/,
+                                   const StepSums& /*sums*/) {
   if (scene_.crossings) add_crossings(simulation);
   if (!pathlines_.is_open()) return;
   for (const PathPoint& p : simulation.statistics().path_points) pathlines_.append(packed(p));
@@ -68,18 +58,21 @@ void StatisticsRecording::add_crossings(const Simulation& simulation) {
 }
 
 void StatisticsRecording::add_frame(const Simulation& simulation, std::span<const RecordingFrame> frames) {
-  if (!scene_.options.hits) return;
-  write_frame_file(writing_, folder_ / walls_name(frames.back()),
-                   wall_faces_file(simulation.environment(), simulation.statistics().hits).data(), compression_);
-  write_list(writing_, folder_ / "walls.pvd", frames, walls_name);
+  if (scene_.options.hits) {
+    write_frame_file(writing_, folder_ / walls_name(frames.back()),
+                     wall_faces_file(simulation.environment(), simulation.statistics().hits).data(), compression_);
+    write_list(writing_, folder_ / "walls.pvd", frames, walls_name);
+  }
+  if (simulation.steps() % every_ == 0) end_interval(simulation);
 }
 
+// Adds its rows.
 void StatisticsRecording::end_interval(const Simulation& simulation) {
   const double duration = simulation.time() - interval_begin_;
   if (!planes_.is_open() || duration <= 0.0) return;
   for (std::size_t i = 0; i < at_begin_.size(); ++i) {
     const PlaneTotals& now = simulation.statistics().planes[i];
-    StatisticsProgress::Plane& before = at_begin_[i];
+    FilesProgress::Plane& before = at_begin_[i];
     const std::uint64_t forward = now.forward.count - before.forward;
     const std::uint64_t backward = now.backward.count - before.backward;
     const double net = static_cast<double>(forward) - static_cast<double>(backward);
@@ -92,16 +85,24 @@ void StatisticsRecording::end_interval(const Simulation& simulation) {
   interval_begin_ = simulation.time();
 }
 
-StatisticsProgress StatisticsRecording::progress() {
+void StatisticsRecording::send() {
   planes_.send(writing_);
   crossings_.send(writing_);
   pathlines_.send(writing_);
-  return {planes_.bytes(), crossings_.bytes(), pathlines_.bytes(), interval_begin_, at_begin_};
+}
+
+void StatisticsRecording::save(FilesProgress& progress) {
+  send();
+  progress.planes_bytes = planes_.bytes();
+  progress.crossings_bytes = crossings_.bytes();
+  progress.pathlines_bytes = pathlines_.bytes();
+  progress.interval_begin = interval_begin_;
+  progress.at_begin = at_begin_;
 }
 
 void StatisticsRecording::finish(const Simulation& simulation) {
   end_interval(simulation);
-  progress();
+  send();
   if (!pathlines_.is_open()) return;
   writing_.add(0, [from = folder_ / "pathlines.bin", to = folder_ / "pathlines.vtp", compression = compression_] {
     write_xml(to, read_packed_pathlines(from).data(), compression, replace_file);

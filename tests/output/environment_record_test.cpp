@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -110,6 +111,11 @@ void expect_joined(const fs::path& folder, const std::string& step, bool static_
   }
 }
 
+void add_frame(Recording& recording, const Simulation& simulation) {
+  const RecordingFrame frame{simulation.steps(), simulation.time()};
+  recording.add_frame(simulation, {&frame, 1});
+}
+
 class EnvironmentRecordTest : public testing::Test {
  protected:
   test::Folder temporary;
@@ -126,24 +132,25 @@ TEST_F(EnvironmentRecordTest, CellsAndParticlesAreJoinedBySource) {
   Simulation simulation(environment, options);
   simulation.add_random(80, {1.0, -2.0, 0.5});
   WritingThread writing;
-  Recording recording(writing, {folder, true, true}, EnvironmentRecord(mesh), "");
-  simulation.set_after_edit([&](const Environment& edited) { recording.update_after_edit(edited); });
+  std::optional<EnvironmentRecord> record = EnvironmentRecord(mesh);
+  Recording recording({writing, folder}, {true, true}, record, "");
+  simulation.set_after_edit([&](const Environment& edited) { record->update_after_edit(edited); });
   simulation.step();
-  recording.add_frame(simulation);
+  add_frame(recording, simulation);
   writing.finish();
   expect_joined(folder, "000001", true);
   Event cut;
   cut.what = Cut{plane_through({3.5, 1.5, 1.5}, {1.0, 0.2, 0.1}), 0.4};
   apply(simulation, cut);
   simulation.step();
-  recording.add_frame(simulation);
+  add_frame(recording, simulation);
   writing.finish();
   expect_joined(folder, "000002", true);
   Event carve;
   carve.what = Carve{box_tool({4.2, 0.4, 0.3}, {5.4, 1.6, 1.7}), Carving::remove, false};
   apply(simulation, carve);
   simulation.step();
-  recording.add_frame(simulation);
+  add_frame(recording, simulation);
   writing.finish();
   expect_joined(folder, "000003", true);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 
 #include "dartcast/error.hpp"
@@ -46,6 +47,11 @@ const std::string twist = "[[deformation]]\nkind = 'twist'\namplitude = 0.5\nlen
 void add_step(Recording& recording, Simulation& simulation) {
   const SimulationStep& step = simulation.step();
   recording.add_step(simulation, step, {simulation.alive(), simulation.energy()});
+}
+
+void add_frame(Recording& recording, const Simulation& simulation) {
+  const RecordingFrame frame{simulation.steps(), simulation.time()};
+  recording.add_frame(simulation, {&frame, 1});
 }
 
 std::string content(const fs::path& path) {
@@ -101,9 +107,10 @@ TEST_F(RecordingTest, FramesReadBackBitByBit) {
   Simulation simulation(environment, options);
   simulation.add_random(50, {1.0, -2.0, 0.1});
   WritingThread writing;
-  Recording recording(writing, {folder, false, false}, EnvironmentRecord(mesh), "");
+  std::optional<EnvironmentRecord> record = EnvironmentRecord(mesh);
+  Recording recording({writing, folder}, {false, false}, record, "");
   for (int i = 0; i < 5; ++i) add_step(recording, simulation);
-  recording.add_frame(simulation);
+  add_frame(recording, simulation);
   writing.finish();
   const PointFile file = read_points(folder / "particles_000005.vtp");
   ASSERT_EQ(file.points.size(), simulation.particles().size());
@@ -157,8 +164,9 @@ TEST_F(RecordingTest, TheKindOfAParticleOnAWallIsSaid) {
   simulation.add(std::vector<Vec3>{{0.5, 0.25, 0.75}}, {0.0, 0, 0});
   simulation.step();
   WritingThread writing;
-  Recording recording(writing, {folder, false, false}, EnvironmentRecord(mesh), "");
-  recording.add_frame(simulation);
+  std::optional<EnvironmentRecord> record = EnvironmentRecord(mesh);
+  Recording recording({writing, folder}, {false, false}, record, "");
+  add_frame(recording, simulation);
   writing.finish();
   const PointFile file = read_points(folder / "particles_000001.vtp");
   EXPECT_EQ(array(file, "kind").values[0], 2.0);
