@@ -160,10 +160,8 @@ void Recording::write_lists(std::span<const RecordingFrame> frames) const {
 }
 
 void Recording::save(FilesProgress& progress) {
-  stats_.send(writing_);
-  contacts_.send(writing_);
-  progress.stats_bytes = stats_.bytes();
-  progress.contacts_bytes = contacts_.bytes();
+  progress.stats_bytes = stats_.send(writing_);
+  progress.contacts_bytes = contacts_.send(writing_);
 }
 
 void Recording::add_step(const Simulation& simulation, const SimulationStep& step, const StepSums& sums) {

@@ -297,9 +297,6 @@ RecordedFrame reported_particles(const Simulation& simulation, const ReportView&
   return frame;
 }
 
-void ReportRecording::save(FilesProgress& progress) {
-  file_.send(writing_);
-  progress.report_bytes = file_.bytes();
-}
+void ReportRecording::save(FilesProgress& progress) { progress.report_bytes = file_.send(writing_); }
 
 }  // namespace dartcast

@@ -159,11 +159,12 @@ RunTable::RunTable(fs::path path, std::uint64_t bytes) : path_(std::move(path)),
     throw Error(fmt::format("{}: the file cannot be written; check the folder and its permissions", path_.string()));
 }
 
-void RunTable::send(WritingThread& writing) {
-  if (rows_.empty()) return;
+std::uint64_t RunTable::send(WritingThread& writing) {
+  if (rows_.empty()) return bytes_;
   bytes_ += rows_.size();
   const std::size_t size = rows_.size();
   writing.add(size, [path = path_, rows = std::exchange(rows_, {})] { append_bytes(path, rows); });
+  return bytes_;
 }
 
 void RunTable::send_many(WritingThread& writing) {

@@ -74,12 +74,11 @@ class RunTable {
     fmt::format_to(std::back_inserter(rows_), form, std::forward<Values>(values)...);
   }
   void append(std::string_view bytes) { rows_ += bytes; }
-  /// Leaves the rows to the thread.
-  void send(WritingThread& writing);
+  /// Leaves the rows to the thread. Returns the file's length when all that were sent are in it; 0 where there is no
+  /// table.
+  std::uint64_t send(WritingThread& writing);
   /// The same, where they are many.
   void send_many(WritingThread& writing);
-  /// The file's length when all rows that were sent are in it; 0 where there is no table.
-  [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
 
  private:
   std::filesystem::path path_;

@@ -226,14 +226,10 @@ void SolidsRecording::write_solid(const Simulation& simulation, std::size_t i, s
 }
 
 void SolidsRecording::save(FilesProgress& progress) {
-  bodies_.send(writing_);
-  catheters_.send(writing_);
-  solids_.send(writing_);
-  solid_contacts_.send(writing_);
-  progress.bodies_bytes = bodies_.bytes();
-  progress.catheters_bytes = catheters_.bytes();
-  progress.solids_bytes = solids_.bytes();
-  progress.solid_contacts_bytes = solid_contacts_.bytes();
+  progress.bodies_bytes = bodies_.send(writing_);
+  progress.catheters_bytes = catheters_.send(writing_);
+  progress.solids_bytes = solids_.send(writing_);
+  progress.solid_contacts_bytes = solid_contacts_.send(writing_);
 }
 
 }  // namespace dartcast

@@ -85,24 +85,17 @@ void StatisticsRecording::end_interval(const Simulation& simulation) {
   interval_begin_ = simulation.time();
 }
 
-void StatisticsRecording::send() {
-  planes_.send(writing_);
-  crossings_.send(writing_);
-  pathlines_.send(writing_);
-}
-
 void StatisticsRecording::save(FilesProgress& progress) {
-  send();
-  progress.planes_bytes = planes_.bytes();
-  progress.crossings_bytes = crossings_.bytes();
-  progress.pathlines_bytes = pathlines_.bytes();
+  progress.planes_bytes = planes_.send(writing_);
+  progress.crossings_bytes = crossings_.send(writing_);
+  progress.pathlines_bytes = pathlines_.send(writing_);
   progress.interval_begin = interval_begin_;
   progress.at_begin = at_begin_;
 }
 
 void StatisticsRecording::finish(const Simulation& simulation) {
   end_interval(simulation);
-  send();
+  planes_.send(writing_);
   if (!pathlines_.is_open()) return;
   writing_.add(0, [from = folder_ / "pathlines.bin", to = folder_ / "pathlines.vtp", compression = compression_] {
     write_xml(to, read_packed_pathlines(from).data(), compression, replace_file);

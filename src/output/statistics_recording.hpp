@@ -29,7 +29,6 @@ class StatisticsRecording final : public Recorder {
  private:
   void add_crossings(const Simulation& simulation);
   void end_interval(const Simulation& simulation);
-  void send();
 
   std::uint64_t every_;
   Compression compression_;
