@@ -319,7 +319,7 @@ class Bodies {
   [[nodiscard]] std::span<const double> radii() const;
   /// Index of the body of each particle.
   [[nodiscard]] std::span<const std::uint32_t> body_of() const;
-  [[nodiscard]] std::span<const ParticleStatus> fates() const;
+  [[nodiscard]] std::span<const ParticleStatus> statuses() const;
 
   /// Sums over all steps and both passes. Each pass counts `steps` times particles.
   [[nodiscard]] const Counters& counters() const;

@@ -96,14 +96,14 @@ struct Acceleration {
 /// and potential energy is then bounded for any number of steps (docs/method.md, "Reflection"). Without one the sum
 /// changes at each contact by up to the work of a step.
 ContactCallback respond_with(const WallResponses& responses, std::span<Vec3> velocities,
-                             std::span<ParticleStatus> fates, double dt, const Acceleration& acceleration = {});
+                             std::span<ParticleStatus> statuses, double dt, const Acceleration& acceleration = {});
 
 /// Serves particles that a step has stopped at a wall beyond their last contact (StepReport::stopped). Each gets a
 /// velocity that all walls met in the step permit, with no more energy than it had at that wall. They stand still for
 /// the rest of the step, so gravity gives them no energy in it. Call it after an advance() with respond_with(), with
 /// the same arguments. Cost: linear in the contacts of the step; nothing where none is stopped.
 void hold_stopped(const StepReport& report, const WallResponses& responses, std::span<Vec3> velocities,
-                  std::span<const ParticleStatus> fates, double dt, const Acceleration& acceleration = {});
+                  std::span<const ParticleStatus> statuses, double dt, const Acceleration& acceleration = {});
 
 // The operators, for a caller's own responses. Vectors are relative to the wall; walls in the order of a contact's.
 

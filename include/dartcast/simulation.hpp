@@ -342,7 +342,7 @@ class Simulation {
   [[nodiscard]] const Particles& particles() const;
   [[nodiscard]] std::span<const std::uint64_t> ids() const;
   [[nodiscard]] std::span<const Vec3> velocities() const;
-  [[nodiscard]] std::span<const ParticleStatus> fates() const;
+  [[nodiscard]] std::span<const ParticleStatus> statuses() const;
   [[nodiscard]] std::span<const std::uint32_t> contact_counts() const;  ///< they stop at 2^32 - 1
   [[nodiscard]] std::span<const double> radii() const;
   /// 1 for those that were held in the last step: they moved along with their cell instead of on their own.

@@ -32,7 +32,7 @@ struct Counters {
   std::array<std::uint64_t, histogram_size> histogram{};
   std::uint64_t forecast_kept = 0;           ///< ended in the simplex where they began, without a contact
   std::uint64_t updated_by_deformation = 0;  ///< changed simplex, as the vertices' motion alone would have done
-  std::uint64_t steps_split = 0;  ///< taken in several parts, because the vertices turned or stretched too much
+  std::uint64_t steps_split = 0;  ///< taken in several slices, because the vertices turned or stretched too much
   std::array<std::uint64_t, 3> contacts{};  ///< by kind: vertex, edge, face
   std::uint64_t unfinished =
       0;  ///< stopped at the last contact allowed in a step, or where the way leads out of the exact range
@@ -56,11 +56,11 @@ struct StepOptions {
   /// Largest number of contacts of a particle in one step, at least 1. At the last one it is asked to slide.
   unsigned max_contacts = 16;
   /// Largest error of the chord against the true motion relative to the vertices, as a share (> 0) of the local edge. A
-  /// step is split into ceil(sqrt(|A| |r| / (2 tolerance edge))) parts. A is the gradient of the vertices'
+  /// step is split into ceil(sqrt(|A| |r| / (2 tolerance edge))) slices. A is the gradient of the vertices'
   /// displacement, r is the particle's own motion.
   double tolerance = 0.05;
-  /// Largest number of parts, at least 1. A step that needs more is taken in this many.
-  unsigned max_parts = 256;
+  /// Largest number of slices, at least 1. A step that needs more is taken in this many.
+  unsigned max_slices = 256;
 };
 
 /// Throws InvalidArgument, which names the caller and the option, if an option is out of range.

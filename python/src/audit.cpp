@@ -21,13 +21,13 @@ void add_all(StateHash& hash, const Typed<"Integers">& given_ids, const Particle
              const Typed<"Points">& given, const Typed<"Integers | None">& given_fates) {
   const auto velocities = vectors(given, "velocities");
   const auto ids = given_ids.cast<std::vector<std::uint64_t>>();
-  const auto fates =
+  const auto statuses =
       given_fates.is_none() ? std::vector<std::uint64_t>(ids.size()) : given_fates.cast<std::vector<std::uint64_t>>();
   const Use use(*p.usage, "the set of particles");
   const std::size_t count = p.particles.size();
-  if (ids.size() != count || velocities.size() != count || fates.size() != count)
+  if (ids.size() != count || velocities.size() != count || statuses.size() != count)
     throw InvalidArgument("StateHash.add: one id, velocity and fate for each particle are needed");
-  for (std::size_t i = 0; i < count; ++i) hash.add(ids[i], p.particles[i], velocities[i], fates[i]);
+  for (std::size_t i = 0; i < count; ++i) hash.add(ids[i], p.particles[i], velocities[i], statuses[i]);
 }
 
 }  // namespace
@@ -42,7 +42,8 @@ void bind(py::module_& m) {
           "words", [](const StateHash& h) -> Typed<"tuple[int, int]"> { return py::tuple(py::cast(h.words())); },
           "Two numbers below 2^64, from which StateHash(words) makes an equal hash.")
       .def("add", &StateHash::add, about("StateHash::add"))
-      .def("add", &add_all, py::arg("ids"), py::arg("particles"), py::arg("velocities"), py::arg("fates") = py::none(),
+      .def("add", &add_all, py::arg("ids"), py::arg("particles"), py::arg("velocities"),
+           py::arg("statuses") = py::none(),
            "Adds all particles of a set: one id, velocity and fate (0 where None) for each.")
       .def("__iadd__", &StateHash::operator+=, py::arg("other"))
       .def("__eq__",

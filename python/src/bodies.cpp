@@ -103,7 +103,7 @@ void bind_properties(Class& c) {
   property(c, "masses", &Bodies::masses, "float64 (n,).");
   property(c, "radii", &Bodies::radii, "float64 (n,).");
   property(c, "body_of", &Bodies::body_of);
-  property(c, "fates", &Bodies::fates, "Of all particles, uint8 (n,): values of ParticleStatus.");
+  property(c, "statuses", &Bodies::statuses, "Of all particles, uint8 (n,): values of ParticleStatus.");
   property(c, "counters", &Bodies::counters);
   method(c, "audit", &Bodies::audit);
   method(c, "state_hash", &Bodies::state_hash);

@@ -57,9 +57,10 @@ void bind_callback(py::module_& m) {
         return std::make_shared<LibraryAnswers>(responses_of(responses, nullptr), velocities, statuses, dt,
                                                 acceleration);
       },
-      about("respond_with",
-            "velocities: float64 (n, 3), written in place. fates: uint8 (n,) of ParticleStatus, written in place; or "
-            "None. The arrays are kept alive. advance(..., respond=Reflect(0.5), velocities=v, dt=dt) does the same."));
+      about(
+          "respond_with",
+          "velocities: float64 (n, 3), written in place. statuses: uint8 (n,) of ParticleStatus, written in place; or "
+          "None. The arrays are kept alive. advance(..., respond=Reflect(0.5), velocities=v, dt=dt) does the same."));
 }
 
 // Every index that hold_stopped() reads must be below the number of velocities.
@@ -75,17 +76,17 @@ void bind_functions(py::module_& m) {
   m.def(
       "hold_stopped",
       [](const StepReport& report, const Typed<"Responses">& responses, const Typed<"Points">& given,
-         const Typed<"NDArray[uint8] | None">& fates, double dt, const Acceleration& acceleration) {
+         const Typed<"NDArray[uint8] | None">& statuses, double dt, const Acceleration& acceleration) {
         const auto velocities = writable_vectors(given, "velocities");
-        const std::vector<ParticleStatus> alive(fates.is_none() ? velocities.size() : 0);
-        const auto statuses = fates.is_none() ? std::span<const ParticleStatus>(alive) : statuses_of(fates);
+        const std::vector<ParticleStatus> alive(statuses.is_none() ? velocities.size() : 0);
+        const auto statuses = statuses.is_none() ? std::span<const ParticleStatus>(alive) : statuses_of(statuses);
         if (statuses.size() != velocities.size())
           throw InvalidArgument("hold_stopped: one velocity and one status per particle are needed");
         expect_report_of(report, velocities.size());
         hold_stopped(report, responses_of(responses, nullptr), velocities, statuses, dt, acceleration);
       },
       about("hold_stopped",
-            "velocities: float64 (n, 3), written in place. fates: uint8 (n,), or None where all are alive."));
+            "velocities: float64 (n, 3), written in place. statuses: uint8 (n,), or None where all are alive."));
   m.def(
       "reflected",
       [](const Vec3& v, const std::vector<WallHit>& walls, double restitution, double friction) {

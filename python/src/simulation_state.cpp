@@ -96,7 +96,7 @@ void bind_particles(Class& c) {
   property(c, "positions", &positions, "Of all particles, float64 (n, 3).");
   property(c, "ids", &Simulation::ids, "uint64 (n,).");
   property(c, "velocities", &Simulation::velocities, "float64 (n, 3).");
-  property(c, "fates", &Simulation::fates, "uint8 (n,): values of ParticleStatus.");
+  property(c, "statuses", &Simulation::statuses, "uint8 (n,): values of ParticleStatus.");
   property(c, "contact_counts", &Simulation::contact_counts, "uint32 (n,).");
   property(c, "radii", &Simulation::radii, "float64 (n,).");
   c.def_property_readonly("held", &held, about("Simulation::held", "bool (n,)."));

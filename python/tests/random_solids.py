@@ -169,7 +169,7 @@ class BodyCalls:
     def look(self) -> None:
         for i in range(len(self.bodies)):
             self.bodies.fits(i), self.bodies.energy(i), self.bodies.rigid_motion_of(i)
-        assert len(self.bodies.positions) == len(self.bodies.fates)
+        assert len(self.bodies.positions) == len(self.bodies.statuses)
         self.check()
 
     def refuse(self) -> None:
@@ -319,7 +319,7 @@ class SimulationCalls:
 
     def look(self) -> None:
         simulation = self.simulation
-        assert len(simulation.positions) == len(simulation.ids) == len(simulation.fates) == len(simulation.held)
+        assert len(simulation.positions) == len(simulation.ids) == len(simulation.statuses) == len(simulation.held)
         simulation.statistics.hits.faces(), simulation.event_log, simulation.energy(), simulation.state_hash().hex()
         self.check()
 

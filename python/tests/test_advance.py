@@ -264,7 +264,7 @@ def test_the_message_says_what_was_expected_what_came_and_what_to_do():
 
 def test_options_out_of_range_are_refused():
     env, parts = scene()
-    for bad in (dict(max_contacts=0), dict(tolerance=0.0), dict(tolerance=np.nan), dict(max_parts=0)):
+    for bad in (dict(max_contacts=0), dict(tolerance=0.0), dict(tolerance=np.nan), dict(max_slices=0)):
         options = dartcast.StepOptions(**bad)
         for call in (lambda: env.advance(parts, parts.positions, options=options), options.check,
                      lambda: env.check_advance(parts, options, "mine")):

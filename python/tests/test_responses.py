@@ -151,8 +151,8 @@ def test_stopped_particles_are_held():
     assert len(report.stopped) == 1
     dartcast.records.hold_stopped(report, Reflect(), v, None, DT)
     assert v[0, 2] <= 1e-12
-    for velocities, fates, error in ((np.zeros((0, 3)), None, dartcast.InvalidArgument),
+    for velocities, statuses, error in ((np.zeros((0, 3)), None, dartcast.InvalidArgument),
                                      (v, np.zeros(2, dtype=np.uint8), dartcast.InvalidArgument),
                                      (v, np.zeros(1), TypeError)):
         with pytest.raises(error):
-            dartcast.records.hold_stopped(report, Slide(), velocities, fates, DT)
+            dartcast.records.hold_stopped(report, Slide(), velocities, statuses, DT)

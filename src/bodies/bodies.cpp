@@ -44,7 +44,7 @@ std::span<Vec3> Bodies::velocities() { return impl_->velocities_; }
 std::span<const double> Bodies::masses() const { return impl_->masses_; }
 std::span<const double> Bodies::radii() const { return impl_->radii_; }
 std::span<const std::uint32_t> Bodies::body_of() const { return impl_->body_of_; }
-std::span<const ParticleStatus> Bodies::fates() const { return impl_->fates_; }
+std::span<const ParticleStatus> Bodies::statuses() const { return impl_->fates_; }
 
 const Counters& Bodies::counters() const { return impl_->counters_; }
 StateHash Bodies::state_hash() const { return impl_->state_hash(); }

@@ -62,7 +62,7 @@ void Bodies::Impl::first_pass() {
   });
   hold_stuck();
   const Particles before = particles_;
-  const std::vector<ParticleStatus> fates = fates_;
+  const std::vector<ParticleStatus> statuses = fates_;
   last_.motion = advance(false);
   measure();
   // Energy always covers limited targets of a body that touches no other. Where bodies that collide still lack it,
@@ -70,7 +70,7 @@ void Bodies::Impl::first_pass() {
   for (const bool collides : {true, false}) {
     if (std::all_of(bodies_.begin(), bodies_.end(), [](const Body& b) { return b.pays; })) return;
     particles_ = before;
-    fates_ = fates;
+    fates_ = statuses;
     if (!collides) std::copy(outer_forces_.begin(), outer_forces_.end(), contact_forces_.begin());
     for_each_body([&](Body& body) {
       body.limited = body.limited || !body.pays;

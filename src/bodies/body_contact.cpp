@@ -28,7 +28,7 @@ Vec3 along_walls(const Pass& pass, const Vec3& v, std::span<const WallHit> walls
 
 // Whether the wall's response ends the particle's step here.
 bool ends_here(const Pass& pass, const Contact& contact, std::span<const WallHit> walls) {
-  ParticleStatus& fate = pass.fates[contact.particle];
+  ParticleStatus& fate = pass.statuses[contact.particle];
   if (fate != ParticleStatus::alive) return true;
   switch (pass.responses->of(walls.front().patch).kind) {
     case WallResponseKind::stick: fate = ParticleStatus::stuck; break;

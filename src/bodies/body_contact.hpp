@@ -61,7 +61,7 @@ struct Pass {
   std::span<const Vec3> forces;      ///< from other bodies, per mass: in the first pass
   std::span<const TouchedFaces> on;  ///< at the end of the last step
   std::span<TouchedFaces> next_on;
-  std::span<ParticleStatus> fates;
+  std::span<ParticleStatus> statuses;
   std::span<Leg> legs;
 };
 

@@ -112,7 +112,7 @@ StepReplay step_of(const ReplayJson& json) {
   step.state = state_of(json.at("particle"), step.weights);
   step.target = point_of(json.at("target"));
   const ReplayJson& options = json.at("options");
-  step.options = {options.at("max_contacts"), options.at("tolerance"), options.at("max_parts")};
+  step.options = {options.at("max_contacts"), options.at("tolerance"), options.at("max_slices")};
   step.responds = json.contains("answers");
   if (step.responds)
     for (const ReplayJson& a : json.at("answers"))
@@ -132,7 +132,7 @@ std::string replay_text(const StepReplay& step) {
                      {"options",
                       {{"max_contacts", step.options.max_contacts},
                        {"tolerance", step.options.tolerance},
-                       {"max_parts", step.options.max_parts}}}};
+                       {"max_slices", step.options.max_slices}}}};
   if (step.end) json["end"] = point_json(*step.end);
   if (step.responds) {
     json["answers"] = ReplayJson::array();

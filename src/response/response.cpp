@@ -103,7 +103,7 @@ bool keeps_velocity(WallResponseKind kind) {
 struct LibraryResponse {
   const WallResponses& responses;
   std::span<Vec3> velocities;
-  std::span<ParticleStatus> fates;
+  std::span<ParticleStatus> statuses;
   double dt;
   Acceleration acceleration;
 
@@ -131,7 +131,7 @@ struct LibraryResponse {
 
   AfterContact operator()(const Contact& contact, std::span<const WallHit> walls,
                           std::span<const WallHit> earlier) const {
-    ParticleStatus& fate = fates[contact.particle];
+    ParticleStatus& fate = statuses[contact.particle];
     if (fate != ParticleStatus::alive) return {};
     const Vec3 wall_velocity = contact.wall_displacement * (1.0 / dt);
     Vec3& velocity = velocities[contact.particle];
@@ -160,17 +160,17 @@ bool is_library_response(const ContactCallback& respond) { return respond.target
 }  // namespace detail
 
 ContactCallback respond_with(const WallResponses& responses, std::span<Vec3> velocities,
-                             std::span<ParticleStatus> fates, double dt, const Acceleration& acceleration) {
+                             std::span<ParticleStatus> statuses, double dt, const Acceleration& acceleration) {
   if (!(dt > 0.0)) throw InvalidArgument("respond_with: dt must be positive");
-  if (velocities.size() != fates.size())
+  if (velocities.size() != statuses.size())
     throw InvalidArgument("respond_with: one velocity and one status per particle are needed");
   if (acceleration.value != Vec3{} && !(acceleration.duration > 0.0))
     throw InvalidArgument("respond_with: the duration of an acceleration must be positive");
-  return LibraryResponse{responses, velocities, fates, dt, acceleration};
+  return LibraryResponse{responses, velocities, statuses, dt, acceleration};
 }
 
 void hold_stopped(const StepReport& report, const WallResponses& responses, std::span<Vec3> velocities,
-                  std::span<const ParticleStatus> fates, double dt, const Acceleration& acceleration) {
+                  std::span<const ParticleStatus> statuses, double dt, const Acceleration& acceleration) {
   const std::vector<Contact>& contacts = report.contacts.contacts;
   auto next = contacts.begin();
   for (const StoppedParticle& stopped : report.stopped) {
@@ -178,7 +178,7 @@ void hold_stopped(const StepReport& report, const WallResponses& responses, std:
     if (next == contacts.begin() || std::prev(next)->particle != stopped.particle) continue;
     const Contact& contact = *std::prev(next);
     const std::span<const WallHit> walls = report.contacts.walls_of(contact);
-    if (fates[contact.particle] != ParticleStatus::alive || !keeps_velocity(responses.of(walls.front().patch).kind))
+    if (statuses[contact.particle] != ParticleStatus::alive || !keeps_velocity(responses.of(walls.front().patch).kind))
       continue;
     const Vec3 wall_velocity = contact.wall_displacement * (1.0 / dt);
     Vec3& velocity = velocities[contact.particle];

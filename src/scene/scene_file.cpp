@@ -48,7 +48,9 @@ class SceneReader {
     std::stable_sort(scene.events.begin(), scene.events.end(),
                      [](const EventScene& a, const EventScene& b) { return a.event.at < b.event.at; });
     scene.remesh = remesh(root.table("remesh"));
-    scene.adaptive_subdivision = adaptive_subdivision(root.table("crowding"));
+    // Scenes of version 0.1 have the older name.
+    const char* const name = root.has("crowding") ? "crowding" : "adaptive_subdivision";
+    scene.adaptive_subdivision = adaptive_subdivision(root.table(name));
     scene.statistics = read_statistics(root.table("statistics"));
     scene.output = output(root.table("output"));
     root.finish();

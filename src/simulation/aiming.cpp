@@ -64,7 +64,7 @@ inline Vec3 Aiming::accelerated(const Segment& segment, const Vec3& v, const Vec
 
 Aiming::Segment Aiming::segment_of(ParticleSet& set, double dt, bool moving) {
   targets_.resize(set.states.size());
-  return {set.states, set.fates(), set.velocities(), dt, options_.drag > 0.0 ? lost_to_drag(dt) : 0.0, moving};
+  return {set.states, set.statuses(), set.velocities(), dt, options_.drag > 0.0 ? lost_to_drag(dt) : 0.0, moving};
 }
 
 void Aiming::aim(ParticleSet& set, double dt, bool moving) {
@@ -89,7 +89,7 @@ void Aiming::aim_at_field(const Segment& segment) {
 }
 
 void Aiming::aim_one(const Segment& segment, std::size_t i) {
-  const bool leaving = leaves(segment.fates[i]);
+  const bool leaving = leaves(segment.statuses[i]);
   const Aim a = leaving ? Aim{segment.velocities[i], segment.particles[i].position} : aim_at(segment, i);
   segment.velocities[i] = a.velocity;
   targets_[i] = flushed(a.target);
@@ -100,7 +100,7 @@ void Aiming::aim_in_flight(const Segment& segment, std::size_t begin, std::size_
   const std::span<const ParticleState> states = segment.particles.states();
   const std::span<Vec3> velocities = segment.velocities;
   for (std::size_t i = begin; i < end; ++i) {
-    if (states[i].held || segment.fates[i] != ParticleStatus::alive) {
+    if (states[i].held || segment.statuses[i] != ParticleStatus::alive) {
       aim_one(segment, i);
       continue;
     }
@@ -131,7 +131,7 @@ void Aiming::aim_in_flow(const Segment& segment, const detail::FlowScene& scene,
   const std::size_t size = end - begin;
   const Particles& particles = segment.particles;
   detail::aim_in_flow(scene, {particles.states().subspan(begin, size), particles.vertex_numbers().subspan(begin, size),
-                              segment.fates.subspan(begin, size), segment.velocities.subspan(begin, size),
+                              segment.statuses.subspan(begin, size), segment.velocities.subspan(begin, size),
                               std::span(targets_).subspan(begin, size), aimed.first(size / 4)});
 }
 
@@ -140,7 +140,7 @@ void Aiming::aim_by_runge_kutta(const Segment& segment) {
   parallel_for(targets_.size(), tracer_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const ParticleState& s = segment.particles[i];
-      const bool follows = segment.fates[i] == ParticleStatus::alive && !s.held;
+      const bool follows = segment.statuses[i] == ParticleStatus::alive && !s.held;
       const Aim a = follows ? Aim{runge_kutta_velocity(step, s), {}} : aim_at(segment, i);
       segment.velocities[i] = a.velocity;
       targets_[i] = flushed(follows ? s.position + a.velocity * segment.dt : a.target);
@@ -151,7 +151,7 @@ void Aiming::aim_by_runge_kutta(const Segment& segment) {
 void Aiming::aim_stuck(ParticleSet& set, double dt) {
   const Segment segment = segment_of(set, dt, true);
   for (std::size_t i = 0; i < targets_.size(); ++i) {
-    if (segment.fates[i] == ParticleStatus::stuck) targets_[i] = flushed(aim_at(segment, i).target);
+    if (segment.statuses[i] == ParticleStatus::stuck) targets_[i] = flushed(aim_at(segment, i).target);
   }
 }
 
@@ -160,7 +160,7 @@ void Aiming::aim_stuck(ParticleSet& set, double dt) {
 Aiming::Aim Aiming::aim_at(const Segment& segment, std::size_t i) const {
   const ParticleState& s = segment.particles[i];
   if (s.held) return {segment.velocities[i], s.position};
-  const bool stuck = segment.fates[i] == ParticleStatus::stuck;
+  const bool stuck = segment.statuses[i] == ParticleStatus::stuck;
   if (!stuck && !field_ && !force_) {
     const Vec3 v = accelerated(segment, segment.velocities[i], {}, {});
     return {v, s.position + v * segment.dt};

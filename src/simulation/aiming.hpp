@@ -41,7 +41,7 @@ class Aiming {
  private:
   struct Segment {
     const Particles& particles;
-    std::span<const ParticleStatus> fates;
+    std::span<const ParticleStatus> statuses;
     std::span<Vec3> velocities;
     double dt;    // s
     double lost;  // share of the velocity relative to the flow that drag takes

@@ -73,7 +73,8 @@ void EventScheduler::set_events(std::vector<Event> events) {
 
 void EventScheduler::set_adaptive_subdivision(const AdaptiveSubdivisionScene& subdivision) {
   if (environment_.map().dimension() == 2 && subdivision.every > 0)
-    throw InvalidArgument("adaptive subdivision: cells of the plane are not subdivided; leave [crowding] out");
+    throw InvalidArgument(
+        "adaptive subdivision: cells of the plane are not subdivided; leave [adaptive_subdivision] out");
   if (!subdivision_.subdivisions().empty())
     throw InvalidArgument("adaptive subdivision: cells are subdivided already; set the options before the first step");
   subdivision_ = AdaptiveSubdivision(subdivision.options);

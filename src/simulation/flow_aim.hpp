@@ -30,7 +30,7 @@ struct FlowScene {
 struct FlowParticles {
   std::span<const ParticleState> states;
   std::span<const VertexNumbers> vertices;
-  std::span<const ParticleStatus> fates;
+  std::span<const ParticleStatus> statuses;
   std::span<Vec3> velocities;
   std::span<Vec3> targets;
   std::span<std::uint8_t> aimed;

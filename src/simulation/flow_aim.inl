@@ -78,7 +78,7 @@ class FlowKernel {
   [[nodiscard]] unsigned free_lanes(std::size_t i) const {
     unsigned lanes = 0;
     for (unsigned k = 0; k < 4; ++k) {
-      const bool is_free = !particles_.states[i + k].held && particles_.fates[i + k] == ParticleStatus::alive;
+      const bool is_free = !particles_.states[i + k].held && particles_.statuses[i + k] == ParticleStatus::alive;
       lanes |= static_cast<unsigned>(is_free) << k;
     }
     return lanes;

@@ -58,8 +58,8 @@ struct ParticleSet {
   [[nodiscard]] std::span<const std::uint64_t> ids() const { return table[table.id]; }
   [[nodiscard]] std::span<Vec3> velocities() { return table[table.velocity]; }
   [[nodiscard]] std::span<const Vec3> velocities() const { return table[table.velocity]; }
-  [[nodiscard]] std::span<ParticleStatus> fates() { return table[table.fate]; }
-  [[nodiscard]] std::span<const ParticleStatus> fates() const { return table[table.fate]; }
+  [[nodiscard]] std::span<ParticleStatus> statuses() { return table[table.fate]; }
+  [[nodiscard]] std::span<const ParticleStatus> statuses() const { return table[table.fate]; }
   [[nodiscard]] std::span<const std::uint32_t> contact_counts() const { return table[table.contact_count]; }
   [[nodiscard]] std::span<const double> radii() const { return table[table.radius]; }
   [[nodiscard]] std::span<const std::uint8_t> held() const { return table[table.held]; }

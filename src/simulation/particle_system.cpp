@@ -163,14 +163,14 @@ void ParticleSystem::advance_segment(unsigned segment, std::vector<std::uint8_t>
         : options_.wall_motion == WallMotion::simultaneous
             ? simultaneous_stepper_.advance(environment_, set_.states, aiming_.targets(), respond, options_.step)
             : environment_.advance(set_.states, aiming_.targets(), respond, options_.step);
-    hold_stopped(report, responses_, set_.velocities(), set_.fates(), options_.dt, aiming_.acceleration(dt));
+    hold_stopped(report, responses_, set_.velocities(), set_.statuses(), options_.dt, aiming_.acceleration(dt));
     append_segment(last_.report, std::move(report), segment, options_.substeps);
     return;
   }
   const std::span<const double> clearances = collides() ? contacts_.clearances() : std::span<const double>();
   SphereReport report =
       stepper_.advance(environment_, set_.states, set_.radii(), aiming_.targets(), respond, options_.step, clearances);
-  hold_stopped(report.step, responses_, set_.velocities(), set_.fates(), options_.dt, aiming_.acceleration(dt));
+  hold_stopped(report.step, responses_, set_.velocities(), set_.statuses(), options_.dt, aiming_.acceleration(dt));
   contacts_.add_to(report.step);
   append_segment(last_.report, std::move(report.step), segment, options_.substeps);
   for (const SphereOverlap& o : report.overlaps) totals_.deepest_in_wall = std::max(totals_.deepest_in_wall, o.depth);
@@ -181,9 +181,9 @@ void ParticleSystem::advance_segment(unsigned segment, std::vector<std::uint8_t>
 // Impulses of other spheres change velocities, too: contacts of pushed spheres know of no acceleration.
 ContactCallback ParticleSystem::response(double dt) {
   ContactCallback free =
-      respond_with(responses_, set_.velocities(), set_.fates(), options_.dt, aiming_.acceleration(dt));
+      respond_with(responses_, set_.velocities(), set_.statuses(), options_.dt, aiming_.acceleration(dt));
   if (!collides()) return free;
-  return [this, free, pushed = respond_with(responses_, set_.velocities(), set_.fates(), options_.dt)](
+  return [this, free, pushed = respond_with(responses_, set_.velocities(), set_.statuses(), options_.dt)](
              const Contact& contact, std::span<const WallHit> walls, std::span<const WallHit> earlier) {
     return (contacts_.pushed(contact.particle) ? pushed : free)(contact, walls, earlier);
   };
@@ -212,18 +212,18 @@ void ParticleSystem::mark_held() {
 void ParticleSystem::remove_gone(std::span<const std::uint8_t> departed) {
   std::vector<std::uint8_t> gone(set_.states.size(), 0);
   const std::span<const std::uint64_t> ids = set_.ids();
-  const std::span<const ParticleStatus> fates = set_.fates();
+  const std::span<const ParticleStatus> statuses = set_.statuses();
   std::uint64_t absorbed = 0;
   const std::vector<Contact>& contacts = last_.report.contacts.contacts;
   std::uint32_t next = 0;  // the first contact of a particle behind the last one that left
   for (std::size_t i = 0; i < gone.size(); ++i) {
     gone[i] = departed.empty() ? 0 : departed[i];
-    if (!leaves(fates[i]) || gone[i] != 0) continue;
+    if (!leaves(statuses[i]) || gone[i] != 0) continue;
     gone[i] = 1;
     while (next < contacts.size() && contacts[next].particle <= i) ++next;
-    last_.left.push_back({ids[i], fates[i], set_.states[i].position, next - 1});
-    ++(fates[i] == ParticleStatus::absorbed ? absorbed : last_.escaped);
-    gone_.add(ids[i], whole_state(i), set_.velocities()[i], static_cast<std::uint64_t>(fates[i]));
+    last_.left.push_back({ids[i], statuses[i], set_.states[i].position, next - 1});
+    ++(statuses[i] == ParticleStatus::absorbed ? absorbed : last_.escaped);
+    gone_.add(ids[i], whole_state(i), set_.velocities()[i], static_cast<std::uint64_t>(statuses[i]));
   }
   last_.absorbed += absorbed;
   totals_.absorbed += absorbed;

@@ -73,7 +73,7 @@ Audit ParticleSystem::audit() const {
 StateHash ParticleSystem::state_hash() const {
   StateHash hash = gone_;
   for (std::size_t i = 0; i < set_.states.size(); ++i)
-    hash.add(set_.ids()[i], whole_state(i), set_.velocities()[i], static_cast<std::uint64_t>(set_.fates()[i]));
+    hash.add(set_.ids()[i], whole_state(i), set_.velocities()[i], static_cast<std::uint64_t>(set_.statuses()[i]));
   return hash;
 }
 

@@ -201,7 +201,7 @@ bool Simulation::deforms() const { return parts_->motion.deforms(); }
 const Particles& Simulation::particles() const { return parts_->particles.set().states; }
 std::span<const std::uint64_t> Simulation::ids() const { return parts_->particles.set().ids(); }
 std::span<const Vec3> Simulation::velocities() const { return parts_->particles.set().velocities(); }
-std::span<const ParticleStatus> Simulation::fates() const { return parts_->particles.set().fates(); }
+std::span<const ParticleStatus> Simulation::statuses() const { return parts_->particles.set().statuses(); }
 std::span<const std::uint32_t> Simulation::contact_counts() const { return parts_->particles.set().contact_counts(); }
 std::span<const double> Simulation::radii() const { return parts_->particles.set().radii(); }
 std::span<const std::uint8_t> Simulation::held() const { return parts_->particles.set().held(); }

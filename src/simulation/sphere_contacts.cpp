@@ -51,11 +51,11 @@ void SphereContacts::weigh(ParticleSet& set) {
   displacements_.resize(radii.size());
   for (std::size_t i = 0; i < radii.size(); ++i) {
     const double r = radii[i];
-    const bool meets =
-        !set.states[i].held && (set.fates()[i] == ParticleStatus::alive || set.fates()[i] == ParticleStatus::stuck);
+    const bool meets = !set.states[i].held &&
+                       (set.statuses()[i] == ParticleStatus::alive || set.statuses()[i] == ParticleStatus::stuck);
     met_radii_[i] = meets ? r : 0.0;
     const double m = mass(r);
-    inverse_masses_[i] = set.fates()[i] == ParticleStatus::alive && m > 0.0 ? 1.0 / m : 0.0;
+    inverse_masses_[i] = set.statuses()[i] == ParticleStatus::alive && m > 0.0 ? 1.0 / m : 0.0;
   }
 }
 
@@ -160,7 +160,7 @@ void SphereContacts::add_to(StepReport& report) {
 void SphereContacts::take_targets(ParticleSet& set, std::span<Vec3> targets) {
   pushed_.assign(targets.size(), 0);
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    if (set.fates()[i] != ParticleStatus::alive || set.states[i].held) continue;
+    if (set.statuses()[i] != ParticleStatus::alive || set.states[i].held) continue;
     const Vec3 target = flushed(set.states[i].position + displacements_[i]);
     pushed_[i] = target != targets[i] ? 1 : 0;
     targets[i] = target;

@@ -91,23 +91,23 @@ DisplacementGradient displacement_gradient(const std::array<Vec3, N>& v, const s
   return {std::sqrt(sum), std::sqrt(shortest)};
 }
 
-/// The parts that a step to `target` is split in, of a particle with coordinates `weights`, whose simplex moves.
+/// The slices that a step to `target` is split in, of a particle with coordinates `weights`, whose simplex moves.
 template <std::size_t N>
-unsigned part_count(const std::array<Vec3, N>& before, const std::array<Vec3, N>& after, const Weights& weights,
-                    const Vec3& target, const StepOptions& options) {
+unsigned slice_count(const std::array<Vec3, N>& before, const std::array<Vec3, N>& after, const Weights& weights,
+                     const Vec3& target, const StepOptions& options) {
   const auto [gradient, edge] = displacement_gradient(before, after);
   const double own = norm(target - combine(after, weights));
-  const double parts = std::ceil(std::sqrt(gradient * own / (2.0 * options.tolerance * edge)));
-  if (!(parts > 1.0)) return 1;
-  return parts < options.max_parts ? static_cast<unsigned>(parts) : options.max_parts;
+  const double slices = std::ceil(std::sqrt(gradient * own / (2.0 * options.tolerance * edge)));
+  if (!(slices > 1.0)) return 1;
+  return slices < options.max_slices ? static_cast<unsigned>(slices) : options.max_slices;
 }
 
-/// The share that the next of `remaining` parts has of the displacement that is planned for all of them, and its target.
+/// The share that the next of `remaining` slices has of the displacement that is planned for all of them, and its target.
 struct PartOfWay {
   Vec3 share;
   Vec3 target;
 };
-inline PartOfWay next_part(const Vec3& here, const Vec3& planned, unsigned remaining) {
+inline PartOfWay next_slice(const Vec3& here, const Vec3& planned, unsigned remaining) {
   const Vec3 share = planned * (1.0 / remaining);
   return {share, flushed(here + share)};
 }

@@ -10,7 +10,7 @@ namespace dartcast {
 void check(const StepOptions& options, const char* caller) {
   if (!(options.tolerance > 0.0))
     throw InvalidArgument(fmt::format("{}: the tolerance is {}: it must be positive", caller, options.tolerance));
-  if (options.max_parts == 0) throw InvalidArgument(fmt::format("{}: max_parts is 0: it must be at least 1", caller));
+  if (options.max_slices == 0) throw InvalidArgument(fmt::format("{}: max_slices is 0: it must be at least 1", caller));
   if (options.max_contacts == 0)
     throw InvalidArgument(fmt::format("{}: max_contacts is 0: it must be at least 1", caller));
 }

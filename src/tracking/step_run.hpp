@@ -147,7 +147,7 @@ class StepRun {
       weights_ = barycentric(before, state_.position);
     }
     if (!positive(after) || !is_free()) return hold(weights_);
-    s_.slices = state_.held ? 1 : part_count(before, after, weights_, s_.target, options_);
+    s_.slices = state_.held ? 1 : slice_count(before, after, weights_, s_.target, options_);
     state_.held = false;
     if (s_.slices > 1) {
       ++counters_.steps_split;
@@ -173,7 +173,7 @@ class StepRun {
     if (s_.slices > 1) {
       ++counters_.steps_split;
       const Vec3 planned = s_.target - state_.position;
-      const auto [share, end] = next_part(state_.position, planned, s_.slices);
+      const auto [share, end] = next_slice(state_.position, planned, s_.slices);
       s_.interval = {0.0, time_of_slice(1), planned - share};
       s_.slice_target = end;
     }
@@ -209,7 +209,7 @@ class StepRun {
     carry(to, time);
     if (!s_.moves_itself()) return;
     const Vec3 planned = s_.interval.later;
-    const auto [share, end] = next_part(here, planned, s_.slices - s_.slice + 1);
+    const auto [share, end] = next_slice(here, planned, s_.slices - s_.slice + 1);
     const bool is_last = s_.slice == s_.slices && (s_.contact_count == 0 || s_.slices == 1);
     s_.slice_target = is_last ? s_.target : end;
     if (!in_exact_range(s_.slice_target)) return static_cast<void>(stop_out_of_range(planned));

@@ -346,7 +346,7 @@ TEST_F(Command, TraceSaysWhatItCannotDo) {
 TEST_F(Command, ReplayTakesARecordedStepAgain) {
   (void)write("step.json", R"({"kind": "dartcast replay 1", "reason": "the position is outside its simplex",
     "motion": "carried", "particle": {"position": [0.125, 0.125, 0.25], "cell": 0, "simplex": 0, "touching": []},
-    "target": [0.125, 0.125, -0.75], "options": {"max_contacts": 16, "tolerance": 0.05, "max_parts": 256},
+    "target": [0.125, 0.125, -0.75], "options": {"max_contacts": 16, "tolerance": 0.05, "max_slices": 256},
     "end": [0.125, 0.125, -0.75], "answers": [{"displacement": [0.0, 0.0, 0.125], "along": false}],
     "points": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], "moved": [],
     "cells": [{"type": "tetrahedron", "free": true, "points": [0, 1, 2, 3]}], "faces": []})");

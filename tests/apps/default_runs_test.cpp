@@ -67,7 +67,7 @@ const std::vector<std::string> components = {"",
 restitution = 0.3
 friction = 0.4
 )",
-                                             R"([crowding]
+                                             R"([adaptive_subdivision]
 every = 5
 most = 1
 least = 0

@@ -79,7 +79,7 @@ TEST(PaperScheme, FollowsADeformation) {
 TEST(PaperScheme, TakesAboutThePapersTestsInItsBar) {
   Pair pair(generate_bar(), test::scaled(1000, 10000), {5.0, 5.0, 28.0});
   std::vector<Vec3> velocities(pair.particles.size(), Vec3{2.0, 3.0, 0.0});
-  std::vector<ParticleStatus> fates(pair.particles.size());
+  std::vector<ParticleStatus> statuses(pair.particles.size());
   const WallResponses walls;
   const double dt = 0.01;
   for (int n = 0; n < 1000; ++n) {
@@ -87,7 +87,7 @@ TEST(PaperScheme, TakesAboutThePapersTestsInItsBar) {
       velocities[i].z -= 9.81 * dt;
       pair.targets[i] = pair.particles[i].position + velocities[i] * dt;
     }
-    pair.step(respond_with(walls, velocities, fates, dt));
+    pair.step(respond_with(walls, velocities, statuses, dt));
   }
   EXPECT_EQ(pair.differ, 0U);
   EXPECT_NEAR(pair.tests_per_step(), 5.1, 0.3);  // 4 in 87% of the steps

@@ -237,7 +237,7 @@ TEST(BodiesEdges, ABodyThatSticksToAWallStaysThere) {
     ASSERT_EQ(bodies.audit().failed, 0U) << i;
     ASSERT_LE(bodies.energy(0).total(), 200.0) << i;
   }
-  EXPECT_GT(std::count(bodies.fates().begin(), bodies.fates().end(), ParticleStatus::stuck), 0);
+  EXPECT_GT(std::count(bodies.statuses().begin(), bodies.statuses().end(), ParticleStatus::stuck), 0);
 }
 
 // Its surface meets the wall first.

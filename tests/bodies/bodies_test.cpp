@@ -300,10 +300,10 @@ TEST(Bodies, StickToSomeWallsAndLeaveAtOthers) {
   EXPECT_EQ(bodies.first_particle(1), 27U);
   EXPECT_EQ(bodies.body_of()[27], 1U);
   EXPECT_EQ(bodies.particles().size(), 54U);
-  const auto stuck = std::count(bodies.fates().begin(), bodies.fates().end(), ParticleStatus::stuck);
+  const auto stuck = std::count(bodies.statuses().begin(), bodies.statuses().end(), ParticleStatus::stuck);
   EXPECT_GE(stuck, 1);
   for (std::size_t p = 0; p < 54; ++p) {
-    if (bodies.fates()[p] == ParticleStatus::stuck) EXPECT_NEAR(bodies.positions()[p].z, 0.0, 1e-12);
+    if (bodies.statuses()[p] == ParticleStatus::stuck) EXPECT_NEAR(bodies.positions()[p].z, 0.0, 1e-12);
   }
 }
 

@@ -103,8 +103,8 @@ TEST(EnvironmentRefuses, OptionsThatMakeNoSense) {
     expect_refused([&] { environment.advance(particles, targets, {}, options); }, "tolerance");
   }
   StepOptions options;
-  options.max_parts = 0;
-  expect_refused([&] { environment.advance(particles, targets, {}, options); }, "max_parts is 0");
+  options.max_slices = 0;
+  expect_refused([&] { environment.advance(particles, targets, {}, options); }, "max_slices is 0");
   EXPECT_TRUE(test::same_bits(before, particles));
 }
 

@@ -55,18 +55,18 @@ class Swarm {
       const double angle = random_.uniform(0, 2 * std::numbers::pi);
       velocities.push_back({speed * std::cos(angle), speed * std::sin(angle), 0});
     }
-    fates.assign(set.size(), ParticleStatus::alive);
+    statuses.assign(set.size(), ParticleStatus::alive);
   }
 
   StepReport step(double dt) {
-    return environment_.advance(set, targets(dt), respond_with(responses_, velocities, fates, dt));
+    return environment_.advance(set, targets(dt), respond_with(responses_, velocities, statuses, dt));
   }
   // Without a response they stop at walls.
   StepReport step_to_walls(double dt) { return environment_.advance(set, targets(dt)); }
 
   Particles set;
   std::vector<Vec3> velocities;
-  std::vector<ParticleStatus> fates;
+  std::vector<ParticleStatus> statuses;
 
  private:
   [[nodiscard]] std::vector<Vec3> targets(double dt) const {
@@ -133,7 +133,7 @@ TEST_P(InThePlane, NobodyIsLostOnALattice) {
     Particles set;
     environment.add(set, points);
     std::vector<Vec3> velocities(set.size());
-    std::vector<ParticleStatus> fates(set.size(), ParticleStatus::alive);
+    std::vector<ParticleStatus> statuses(set.size(), ParticleStatus::alive);
     const WallResponses responses;
     for (int i = 0; i < 40; ++i) {
       std::vector<Vec3> targets;
@@ -141,7 +141,7 @@ TEST_P(InThePlane, NobodyIsLostOnALattice) {
         velocities[k] = {(random.below(9) - 4.0) / 2.0, (random.below(9) - 4.0) / 2.0, 0};
         targets.push_back(set[k].position + velocities[k]);
       }
-      const StepReport report = environment.advance(set, targets, respond_with(responses, velocities, fates, 1.0));
+      const StepReport report = environment.advance(set, targets, respond_with(responses, velocities, statuses, 1.0));
       ASSERT_TRUE(report.held.empty());
       steps += report.counters.particle_steps;
       at_vertices += report.counters.contacts[static_cast<std::size_t>(Kind::vertex)];
@@ -221,11 +221,11 @@ TEST(Plane, ReboundsFoldAStraightPath) {
     const Vec3 velocity = {11.5, -7.125, 0};
     environment.add(set, std::vector<Vec3>{start});
     std::vector<Vec3> velocities = {velocity};
-    std::vector<ParticleStatus> fates = {ParticleStatus::alive};
+    std::vector<ParticleStatus> statuses = {ParticleStatus::alive};
     const WallResponses responses;
     for (int i = 1; i <= 50; ++i) {
       const std::vector<Vec3> targets = {set[0].position + velocities[0]};
-      environment.advance(set, targets, respond_with(responses, velocities, fates, 1.0));
+      environment.advance(set, targets, respond_with(responses, velocities, statuses, 1.0));
       const auto folded = [](double x, double length) {
         const double r = std::fmod(std::fmod(x, 2 * length) + 2 * length, 2 * length);
         return r > length ? 2 * length - r : r;

@@ -58,7 +58,7 @@ struct World {
   Environment environment;
   Particles particles;
   std::vector<Vec3> velocities;
-  std::vector<ParticleStatus> fates;
+  std::vector<ParticleStatus> statuses;
   WallResponses responses{WallResponse{WallResponseKind::reflect, 0.5, 0.1}};
   std::vector<Vec3> rest;
 
@@ -72,7 +72,7 @@ struct World {
       velocities.push_back({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
       if (dimension == 2) velocities.back().z = 0.0;
     }
-    fates.resize(points.size());
+    statuses.resize(points.size());
     rest.assign(environment.positions().begin(), environment.positions().end());
   }
 
@@ -80,7 +80,7 @@ struct World {
     std::vector<Vec3> targets;
     for (std::size_t i = 0; i < particles.size(); ++i) targets.push_back(particles[i].position + velocities[i] * 0.2);
     if (!respond) return environment.advance(particles, targets);
-    return environment.advance(particles, targets, respond_with(responses, velocities, fates, 0.2));
+    return environment.advance(particles, targets, respond_with(responses, velocities, statuses, 0.2));
   }
 
   void move_vertex(std::size_t vertex, double Vec3::*axis, double to) {

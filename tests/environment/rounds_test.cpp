@@ -149,7 +149,7 @@ TEST(Rounds, GiveTheBitsOfAnswersOneByOne) {
       StepOptions options;
       options.max_contacts = threads == 1 ? 16 : threads == 2 ? 3 : 1;
       options.tolerance = threads == 2 ? 0.005 : 0.05;
-      options.max_parts = threads == 4 ? 3 : 256;
+      options.max_slices = threads == 4 ? 3 : 256;
       run(scene, threads, options, threads, seen);
       if (testing::Test::HasFatalFailure()) return;
     }
@@ -175,8 +175,8 @@ TEST(Rounds, TakeTheLibrarysResponses) {
   std::vector<Vec3> velocities(particles.size());
   for (Vec3& v : velocities) v = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
   std::vector<Vec3> same_velocities = velocities;
-  std::vector<ParticleStatus> fates(particles.size());
-  std::vector<ParticleStatus> same_fates = fates;
+  std::vector<ParticleStatus> statuses(particles.size());
+  std::vector<ParticleStatus> same_fates = statuses;
   for (int step = 1; step <= 10; ++step) {
     std::vector<Vec3> targets = test::positions_of(particles);
     for (std::size_t i = 0; i < targets.size(); ++i) targets[i] += velocities[i] * 2.0;
@@ -185,12 +185,12 @@ TEST(Rounds, TakeTheLibrarysResponses) {
     environment.move();
     InRounds in_rounds(respond_with(responses, same_velocities, same_fates, 2.0));
     const StepReport one_by_one =
-        environment.advance(expected, targets, respond_with(responses, velocities, fates, 2.0));
+        environment.advance(expected, targets, respond_with(responses, velocities, statuses, 2.0));
     const StepReport rounds = environment.advance_in_rounds(particles, targets, in_rounds.callback());
     ASSERT_NO_FATAL_FAILURE(expect_equal(rounds, one_by_one));
     ASSERT_TRUE(test::same_bits(test::copy_of(expected), particles));
     ASSERT_EQ(velocities, same_velocities);
-    ASSERT_EQ(fates, same_fates);
+    ASSERT_EQ(statuses, same_fates);
   }
 }
 

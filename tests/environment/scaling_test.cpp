@@ -47,7 +47,7 @@ Outcome run(double scale, const Vec3& shift, Motion motion, int steps) {
   for (std::size_t i = 0; i < particles.size(); ++i) {
     outcome.velocities.push_back(Vec3{random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2)} * scale);
   }
-  std::vector<ParticleStatus> fates(particles.size(), ParticleStatus::alive);
+  std::vector<ParticleStatus> statuses(particles.size(), ParticleStatus::alive);
   const WallResponses responses({WallResponseKind::reflect, 0.9, 0.05});
   std::vector<Vec3> targets(particles.size());
   for (int step = 1; step <= steps; ++step) {
@@ -63,7 +63,7 @@ Outcome run(double scale, const Vec3& shift, Motion motion, int steps) {
       environment.move();
     }
     const StepReport report =
-        environment.advance(particles, targets, respond_with(responses, outcome.velocities, fates, 0.25));
+        environment.advance(particles, targets, respond_with(responses, outcome.velocities, statuses, 0.25));
     outcome.contacts.insert(outcome.contacts.end(), report.contacts.contacts.begin(), report.contacts.contacts.end());
     outcome.counters += report.counters;
     EXPECT_TRUE(report.held.empty());

@@ -81,7 +81,7 @@ Outcome run(unsigned threads, bool deforming, std::uint64_t shuffle, std::size_t
   std::vector<Vec3> shuffled;
   for (const std::uint32_t n : name) shuffled.push_back(velocities[n]);
   velocities = shuffled;
-  std::vector<ParticleStatus> fates(particles.size(), ParticleStatus::alive);
+  std::vector<ParticleStatus> statuses(particles.size(), ParticleStatus::alive);
   const WallResponses responses({WallResponseKind::reflect, 0.9, 0.1});
 
   Outcome outcome;
@@ -93,7 +93,7 @@ Outcome run(unsigned threads, bool deforming, std::uint64_t shuffle, std::size_t
       for (std::size_t i = 0; i < next.size(); ++i) next[i] = deformed(mesh.points[i], step);
       environment.move();
     }
-    record(outcome, environment.advance(particles, targets, respond_with(responses, velocities, fates, 0.2)), name);
+    record(outcome, environment.advance(particles, targets, respond_with(responses, velocities, statuses, 0.2)), name);
   }
   EXPECT_EQ(test::check_states(environment, particles), "");
   outcome.states.resize(particles.size());

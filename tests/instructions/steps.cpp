@@ -131,9 +131,9 @@ int rest_in_corner() {
   const Acceleration gravity{{0, 0, -3}, 0.01};
   const WallResponses responses({WallResponseKind::reflect, 0.5, 0.0});
   std::vector<Vec3> velocities(particles);
-  std::vector<ParticleStatus> fates(particles, ParticleStatus::alive);
+  std::vector<ParticleStatus> statuses(particles, ParticleStatus::alive);
   std::vector<Vec3> targets(particles);
-  const ContactCallback respond = respond_with(responses, velocities, fates, gravity.duration, gravity);
+  const ContactCallback respond = respond_with(responses, velocities, statuses, gravity.duration, gravity);
   std::uint64_t contacts = 0;
   for (std::size_t step = 0; step < steps; ++step) {
     for (std::size_t i = 0; i < particles; ++i) {

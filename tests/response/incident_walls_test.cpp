@@ -105,8 +105,8 @@ Vec3 bounced(const Vec3& v, const std::vector<WallHit>& walls, double restitutio
   std::vector<Vec3> none(1);
   std::vector<TouchedFaces> on(1);
   std::vector<TouchedFaces> next(1);
-  std::vector<ParticleStatus> fates(1, ParticleStatus::alive);
-  const Pass pass{&responses, {}, 1e-3, bodies, body_of, none, none, on, next, fates, legs};
+  std::vector<ParticleStatus> statuses(1, ParticleStatus::alive);
+  const Pass pass{&responses, {}, 1e-3, bodies, body_of, none, none, on, next, statuses, legs};
   Contact contact;
   contact.time_of_impact = 0.5;
   answer_motion(pass, contact, walls, {});

@@ -139,11 +139,11 @@ TEST(WallResponses, RefuseWhatIsOutOfRange) {
     EXPECT_EQ(r.of(Patch{1}).kind, WallResponseKind::reflect);
   }
   std::vector<Vec3> velocities(2);
-  std::vector<ParticleStatus> fates(2);
+  std::vector<ParticleStatus> statuses(2);
   const WallResponses r;
   for (const double dt : {0.0, -1.0, std::nan("")})
-    EXPECT_THROW(respond_with(r, velocities, fates, dt), InvalidArgument);
-  EXPECT_THROW(respond_with(r, velocities, std::span<ParticleStatus>(fates).first(1), 1.0), InvalidArgument);
+    EXPECT_THROW(respond_with(r, velocities, statuses, dt), InvalidArgument);
+  EXPECT_THROW(respond_with(r, velocities, std::span<ParticleStatus>(statuses).first(1), 1.0), InvalidArgument);
 }
 
 TEST(WallResponses, AreMadeOfValues) {
@@ -183,19 +183,19 @@ struct Scene {
   void add(const Vec3& position, const Vec3& velocity) {
     environment.add(particles, std::vector<Vec3>{position});
     velocities.push_back(velocity);
-    fates.push_back(ParticleStatus::alive);
+    statuses.push_back(ParticleStatus::alive);
   }
   StepReport step(double dt = 1.0) {
     std::vector<Vec3> targets;
     for (std::size_t i = 0; i < particles.size(); ++i) targets.push_back(particles[i].position + velocities[i] * dt);
-    return environment.advance(particles, targets, respond_with(responses, velocities, fates, dt));
+    return environment.advance(particles, targets, respond_with(responses, velocities, statuses, dt));
   }
 
   Environment environment;
   Particles particles;
   WallResponses responses;
   std::vector<Vec3> velocities;
-  std::vector<ParticleStatus> fates;
+  std::vector<ParticleStatus> statuses;
 };
 
 TEST(RespondWith, ReflectsPositionsAndVelocities) {
@@ -237,8 +237,8 @@ TEST(RespondWith, StatusPerPatch) {
   s.add({0.5, 0.75, 0.5}, {0.25, 0, -1});
   s.add({0.5, 0.5, 0.5}, {0.25, 0, 0});
   const StepReport report = s.step();
-  EXPECT_EQ(s.fates, (std::vector<ParticleStatus>{ParticleStatus::absorbed, ParticleStatus::escaped,
-                                                  ParticleStatus::stuck, ParticleStatus::alive}));
+  EXPECT_EQ(s.statuses, (std::vector<ParticleStatus>{ParticleStatus::absorbed, ParticleStatus::escaped,
+                                                     ParticleStatus::stuck, ParticleStatus::alive}));
   EXPECT_EQ(s.particles[0].position, (Vec3{2, 0.5, 0.5}));
   EXPECT_EQ(s.particles[1].position, (Vec3{0, 0.5, 0.75}));
   EXPECT_EQ(s.particles[2].position, (Vec3{0.625, 0.75, 0}));
@@ -250,7 +250,7 @@ TEST(RespondWith, StatusPerPatch) {
   s.step();
   EXPECT_EQ(s.particles[2].position, stuck);
   EXPECT_EQ(s.particles[0].position, (Vec3{2, 0.5, 0.5}));
-  EXPECT_EQ(s.fates[2], ParticleStatus::stuck);
+  EXPECT_EQ(s.statuses[2], ParticleStatus::stuck);
 }
 
 TEST(RespondWith, AWallThatMovesGivesItsVelocity) {
@@ -269,7 +269,7 @@ TEST(RespondWith, AWallThatMovesGivesItsVelocity) {
     expect_near(report.contacts.contacts[0].wall_displacement, {0.25, 0, 0});
     expect_near(s.velocities[0], kind == WallResponseKind::reflect ? Vec3{1, 0, 0} : Vec3{0.5, 0, 0}, 1e-12);
     EXPECT_GE(s.particles[0].position.x, 0.25);
-    EXPECT_EQ(s.fates[0], kind == WallResponseKind::stick ? ParticleStatus::stuck : ParticleStatus::alive);
+    EXPECT_EQ(s.statuses[0], kind == WallResponseKind::stick ? ParticleStatus::stuck : ParticleStatus::alive);
   }
 }
 
@@ -323,7 +323,7 @@ TEST(RespondWith, AtTheLastContactNoVelocityPointsIntoAWallMet) {
         environment.add(particles, std::vector<Vec3>{{0, 0.5, 0.25}, {0.1 * std::sin(angle / 2), 0.5, 0.25}});
         ASSERT_EQ(particles.size(), 2U);
         std::vector<Vec3> velocities = {{0, 0.1, -1}, {0.01 * angle, 0.2, -1}};
-        std::vector<ParticleStatus> fates(2, ParticleStatus::alive);
+        std::vector<ParticleStatus> statuses(2, ParticleStatus::alive);
         const WallResponses responses({WallResponseKind::reflect, restitution, 0.0});
         const std::vector<Vec3> before = velocities;
         std::vector<Vec3> targets;
@@ -331,7 +331,7 @@ TEST(RespondWith, AtTheLastContactNoVelocityPointsIntoAWallMet) {
         StepOptions options;
         options.max_contacts = most;
         const StepReport report =
-            environment.advance(particles, targets, respond_with(responses, velocities, fates, 1.0), options);
+            environment.advance(particles, targets, respond_with(responses, velocities, statuses, 1.0), options);
         std::array<bool, 2> solved{};
         for (const Contact& c : report.contacts.contacts) {
           if (!c.last || std::exchange(solved[c.particle], true)) continue;  // the next one is not answered

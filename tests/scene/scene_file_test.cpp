@@ -410,7 +410,7 @@ TEST(SceneFile, MistakesAreNamedWithLineAndRemedy) {
   expect_error(box + "[[particles]]\nradius = -0.1\ncount = 1\n", "4:", "at least 0");
   expect_error(box + "[collisions]\ndensity = 0\n", "4:", "more than 0");
   expect_error(box + "[collisions]\nbounce = 0\n", "4:", "unknown");
-  expect_error(box + "[crowding]\nmost = 5\nleast = 5\n", "5:", "less than most");
+  expect_error(box + "[adaptive_subdivision]\nmost = 5\nleast = 5\n", "5:", "less than most");
   expect_error(box + "[[particles]]\nvelocity = [1, 2, 3]\n", "3:", "one of count");
   expect_error(box + "[[particles]]\ncount = 1\npositions = 'a.csv'\n", "3:", "one of count");
   expect_error(box + "[[particles]]\ninlet = 'a'\n", "3:", "rate");

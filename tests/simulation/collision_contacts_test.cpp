@@ -183,7 +183,7 @@ TEST(CollisionContacts, BouncesOnAStuckSphereKeepTheEnergy) {
   Simulation simulation(environment, falling(dt, Stick{}, true, 1.0));
   simulation.add(std::vector<Vec3>{{2.0, 2.0, r + 0.01}}, {}, r);
   for (int i = 0; i < 100; ++i) simulation.step();
-  ASSERT_EQ(simulation.fates()[0], ParticleStatus::stuck);
+  ASSERT_EQ(simulation.statuses()[0], ParticleStatus::stuck);
   simulation.add(std::vector<Vec3>{{2.0, 2.0, 3.0 * r + 0.6}}, {}, r);
   const double start = energy_of_leapfrog(simulation, 1);
   for (int i = 0; i < 4000; ++i) simulation.step();

@@ -72,7 +72,7 @@ TEST(FlowRanges, Options) {
     refused([&](SimulationOptions& o) { o.collisions->density = bad; }, "density is " + fmt::format("{}", bad));
   }
   refused([](SimulationOptions& o) { o.step.max_contacts = 0; }, "max_contacts");
-  refused([](SimulationOptions& o) { o.step.max_parts = 0; }, "max_parts");
+  refused([](SimulationOptions& o) { o.step.max_slices = 0; }, "max_slices");
   refused([](SimulationOptions& o) { o.step.tolerance = std::nan(""); }, "tolerance");
 }
 

@@ -201,7 +201,7 @@ TEST(Simulation, StuckParticlesMoveWithTheWallWithoutNewContacts) {
   flow.set_deformation(turning(mesh));
   flow.add(std::vector<Vec3>{{9.95, 5, 5}}, {20, 0, 0});
   flow.step();
-  ASSERT_EQ(flow.fates()[0], ParticleStatus::stuck);
+  ASSERT_EQ(flow.statuses()[0], ParticleStatus::stuck);
   const Vec3 r = flow.particles()[0].position - Vec3{5, 5, 5};
   for (int i = 0; i < 50; ++i) flow.step();
   expect_near(flow.particles()[0].position - Vec3{5, 5, 5}, -r, 1e-9);

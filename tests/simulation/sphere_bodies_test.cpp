@@ -316,8 +316,8 @@ TEST(SphereBodies, ABodyThatAWallHoldsGivesNoWay) {
   Both both(test::cube_of(6, 1.0), {}, c, WallResponse{WallResponseKind::stick, 0.0, 0.0});
   both.add_body(3, {0.06, 0.5, 0.5}, {-2.0, 0.0, 0.0}, 1.0);
   for (int i = 0; i < 50; ++i) both.step();
-  ASSERT_TRUE(std::find(both.bodies().fates().begin(), both.bodies().fates().end(), ParticleStatus::stuck) !=
-              both.bodies().fates().end());
+  ASSERT_TRUE(std::find(both.bodies().statuses().begin(), both.bodies().statuses().end(), ParticleStatus::stuck) !=
+              both.bodies().statuses().end());
   both.simulation.add(std::vector<Vec3>{{0.4, 0.5, 0.5}}, {-2.0, 0.0, 0.0}, 0.04);
   for (int i = 0; i < 150; ++i) both.step();
   EXPECT_NEAR(both.simulation.velocities()[0].x, 2.0, 0.02);  // it still trembles

@@ -28,7 +28,7 @@ WallResponse response_of(const Case& c) {
 Answers::Answers(const Case& c, std::uint64_t step, std::span<const std::uint64_t> ids, std::span<const Vec3> before,
                  std::span<const ParticleStatus> fates_before)
     : velocities(before.begin(), before.end()),
-      fates(fates_before.begin(), fates_before.end()),
+      statuses(fates_before.begin(), fates_before.end()),
       case_(c),
       step_(step),
       ids_(ids.begin(), ids.end()),
@@ -36,7 +36,7 @@ Answers::Answers(const Case& c, std::uint64_t step, std::span<const std::uint64_
       responses_(response_of(c)) {
   const std::string_view name = c.name(Knob::response);
   if (name != "stop" && name != "any answer" && name != "into the wall")
-    library_ = respond_with(responses_, velocities, fates, 1.0);
+    library_ = respond_with(responses_, velocities, statuses, 1.0);
 }
 
 ContactCallback Answers::one_by_one() {
@@ -95,7 +95,7 @@ Crowd::Crowd(const Case& c, const SceneMesh& scene, Environment& environment, st
   for (std::size_t i = 0; i < added.size(); ++i)
     if (added[i].location.place == Place::free) ids.push_back(numbers[i]);
   velocities.resize(ids.size());
-  fates.resize(ids.size());
+  statuses.resize(ids.size());
 }
 
 void Crowd::head_for(std::span<const Vec3> targets) {
@@ -104,12 +104,12 @@ void Crowd::head_for(std::span<const Vec3> targets) {
 
 std::unique_ptr<Answers> Crowd::answers(std::uint64_t step, std::size_t first, std::size_t count) const {
   const auto some = [&](const auto& column) { return std::span(column).subspan(first, count); };
-  return std::make_unique<Answers>(case_, step, some(ids), some(velocities), some(fates));
+  return std::make_unique<Answers>(case_, step, some(ids), some(velocities), some(statuses));
 }
 
 void Crowd::answered(const Answers& answers) {
   velocities = answers.velocities;
-  fates = answers.fates;
+  statuses = answers.statuses;
 }
 
 std::vector<Vec3> Crowd::targets(const Environment& environment, std::uint64_t step) const {
@@ -134,7 +134,7 @@ std::vector<Vec3> Crowd::targets(const Environment& environment, std::uint64_t s
       to = random.below(2) == 0 ? v : from + (v - from) * far;
     }
     if (plane) to.z = 0.0;
-    const bool stays = fates[i] != ParticleStatus::alive;
+    const bool stays = statuses[i] != ParticleStatus::alive;
     targets.push_back(stays || !in_exact_range(to) ? from : to);
   }
   return targets;
@@ -155,11 +155,11 @@ void Crowd::keep(const std::vector<bool>& stays) {
     if (!stays[i]) continue;
     ids[kept] = ids[i];
     velocities[kept] = velocities[i];
-    fates[kept++] = fates[i];
+    statuses[kept++] = statuses[i];
   }
   ids.resize(kept);
   velocities.resize(kept);
-  fates.resize(kept);
+  statuses.resize(kept);
 }
 
 std::string Crowd::change_state(const Environment& environment, std::uint64_t step) {
@@ -187,14 +187,14 @@ std::string Crowd::change_state(const Environment& environment, std::uint64_t st
     };
     reordered(ids);
     reordered(velocities);
-    reordered(fates);
+    reordered(statuses);
     if (random.below(4) == 0) {
       std::vector<std::uint8_t> marks(size());
       marks.back() = 1;
       particles.remove(marks);
       ids.pop_back();
       velocities.pop_back();
-      fates.pop_back();
+      statuses.pop_back();
     }
   }
   return particles.size() == ids.size() ? "" : "a particle is lost";

@@ -24,7 +24,7 @@ class Answers {
  public:
   /// `ids`: of the particles that contacts name. `velocities`: those before the step; changed by answers.
   Answers(const Case& c, std::uint64_t step, std::span<const std::uint64_t> ids, std::span<const Vec3> velocities,
-          std::span<const ParticleStatus> fates);
+          std::span<const ParticleStatus> statuses);
   Answers(const Answers&) = delete;
   Answers& operator=(const Answers&) = delete;
   /// Empty where particles stop at walls.
@@ -32,7 +32,7 @@ class Answers {
   [[nodiscard]] RoundCallback in_rounds();
 
   std::vector<Vec3> velocities;
-  std::vector<ParticleStatus> fates;
+  std::vector<ParticleStatus> statuses;
 
  private:
   AfterContact answer(const Contact& c, std::span<const WallHit> walls, std::span<const WallHit> earlier);
@@ -74,7 +74,7 @@ class Crowd {
   Particles particles;
   std::vector<std::uint64_t> ids;
   std::vector<Vec3> velocities;
-  std::vector<ParticleStatus> fates;
+  std::vector<ParticleStatus> statuses;
 
  private:
   void keep(const std::vector<bool>& stays);

@@ -101,7 +101,7 @@ class Points : public Guest {
     wrong = check_report(report, crowd_.size());
     if (wrong.empty()) wrong = compare_with_traces(environment, before, targets, report, *alone);
     if (wrong.empty()) wrong = take_again(environment, step, before, targets, seen);
-    if (wrong.empty() && (alone->velocities != answers->velocities || alone->fates != answers->fates))
+    if (wrong.empty() && (alone->velocities != answers->velocities || alone->statuses != answers->statuses))
       wrong = "traces have other velocities";
     if (wrong.empty() && case_[Knob::rounds] != 0) {
       Particles again = before;
@@ -114,7 +114,7 @@ class Points : public Guest {
     if (wrong.empty() && step.valid && !step.moved)
       wrong = compare_with_walls(environment, before, targets, report, seen);
     if (wrong.empty() && !step.moved) wrong = check_energy(*answers);
-    for (const ParticleStatus fate : answers->fates)
+    for (const ParticleStatus fate : answers->statuses)
       if (fate != ParticleStatus::alive) seen.note(Mark::left);
     if (!wrong.empty() && at_fault_) seen.replay = record(environment, step, before, targets, *at_fault_);
     crowd_.answered(*answers);
@@ -154,7 +154,7 @@ class Points : public Guest {
   [[nodiscard]] StepOptions options() const {
     StepOptions o;
     if (case_.seed % 5 == 0) o.max_contacts = 1 + static_cast<unsigned>(case_.seed % 3);
-    if (case_.seed % 7 == 0) o.max_parts = 3;
+    if (case_.seed % 7 == 0) o.max_slices = 3;
     if (case_.seed % 11 == 0) o.tolerance = 1e-3;
     return o;
   }

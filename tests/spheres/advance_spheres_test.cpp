@@ -341,7 +341,7 @@ TEST(AdvanceSpheres, OfRadiusZeroArePoints) {
       std::vector<Vec3> targets;
       for (std::size_t i = 0; i < swarm.radii.size(); ++i)
         targets.push_back(swarm.particles[i].position + swarm.velocities[i]);
-      const ContactCallback respond = respond_with(bouncing(), swarm.velocities, swarm.fates, 1.0);
+      const ContactCallback respond = respond_with(bouncing(), swarm.velocities, swarm.statuses, 1.0);
       const StepReport report =
           spheres ? swarm.stepper.advance(swarm.environment, swarm.particles, swarm.radii, targets, respond).step
                   : swarm.environment.advance(swarm.particles, targets, respond);

@@ -25,7 +25,7 @@ TEST(Clearances, SaveTheSearch) {
         targets.push_back(swarm.particles[i].position + swarm.velocities[i]);
         clearances.push_back(share * clearance(walls, swarm.particles[i].position));
       }
-      const ContactCallback respond = respond_with(bouncing, swarm.velocities, swarm.fates, 1.0);
+      const ContactCallback respond = respond_with(bouncing, swarm.velocities, swarm.statuses, 1.0);
       const SphereReport report =
           swarm.stepper.advance(swarm.environment, swarm.particles, swarm.radii, targets, respond, {}, clearances);
       contacts += report.step.contacts.contacts.size();

@@ -31,7 +31,7 @@ void run(std::size_t vertex, double Vec3::*axis, double to) {
   Particles particles;
   environment.add(particles, start);
   const std::vector<double> radii(start.size(), 0.15);
-  std::vector<ParticleStatus> fates(start.size());
+  std::vector<ParticleStatus> statuses(start.size());
   const WallResponses responses(WallResponse{WallResponseKind::reflect, 0.5, 0.1});
   SphereStepper stepper;
   const std::vector<Vec3> rest(environment.positions().begin(), environment.positions().end());
@@ -41,7 +41,7 @@ void run(std::size_t vertex, double Vec3::*axis, double to) {
     environment.move(next);
     std::vector<Vec3> targets;
     for (std::size_t i = 0; i < particles.size(); ++i) targets.push_back(particles[i].position + velocities[i] * 0.2);
-    stepper.advance(environment, particles, radii, targets, respond_with(responses, velocities, fates, 0.2));
+    stepper.advance(environment, particles, radii, targets, respond_with(responses, velocities, statuses, 0.2));
     const Audit a = audit(environment.complex(), particles);
     ASSERT_EQ(a.failed, 0U) << "vertex " << vertex << " at " << to << ": " << a.first;
     for (std::size_t i = 0; i < particles.size(); ++i) {

@@ -32,7 +32,7 @@ struct Cloud {
   bool add(const Vec3& x, const Vec3& velocity = {}) {
     if (environment.add(particles, std::vector<Vec3>{x})[0].location.place != Place::free) return false;
     velocities.push_back(velocity);
-    fates.push_back(ParticleStatus::alive);
+    statuses.push_back(ParticleStatus::alive);
     return true;
   }
   template <class Map>
@@ -48,7 +48,7 @@ struct Cloud {
   }
   StepReport step(const WallResponses& responses, const StepOptions& options = {}) {
     StepReport report =
-        stepper.advance(environment, particles, targets(), respond_with(responses, velocities, fates, 1.0), options);
+        stepper.advance(environment, particles, targets(), respond_with(responses, velocities, statuses, 1.0), options);
     expect_in_order(report);
     return report;
   }
@@ -67,7 +67,7 @@ struct Cloud {
   Environment environment;
   Particles particles;
   std::vector<Vec3> velocities;
-  std::vector<ParticleStatus> fates;
+  std::vector<ParticleStatus> statuses;
   SimultaneousStepper stepper;
 };
 
@@ -395,7 +395,7 @@ TEST(Simultaneous, StickingPoints) {
   ASSERT_TRUE(cloud.add({2.25, 2.125, 0.25}));
   cloud.move([](const Vec3& x) { return Vec3{x.x + 0.5, x.y, 1.0 + 0.75 * x.z}; });
   ASSERT_EQ(cloud.step(sticky).contacts.contacts.size(), 1U);
-  EXPECT_EQ(cloud.fates[0], ParticleStatus::stuck);
+  EXPECT_EQ(cloud.statuses[0], ParticleStatus::stuck);
   // It meets the floor at the time 1/4, at x = 2.25, and goes along with it: 0.375 farther.
   EXPECT_NEAR(norm(cloud.particles[0].position - Vec3{2.625, 2.125, 1.0}), 0.0, 2e-6);
   cloud.expect_valid();
@@ -417,7 +417,7 @@ TEST(Simultaneous, PointsThatLeaveAWall) {
   const auto targets = cloud.targets();
   cloud.move([](const Vec3& x) { return turned(x, 0.1, {2.0, 2.0, 2.0}) + Vec3{0.0, 0.0, 0.25}; });
   EXPECT_TRUE(cloud.step(elastic()).contacts.contacts.empty());
-  cloud.environment.advance(carried, targets, respond_with(elastic(), velocities, cloud.fates, 1.0));
+  cloud.environment.advance(carried, targets, respond_with(elastic(), velocities, cloud.statuses, 1.0));
   EXPECT_EQ(hash_of(cloud.particles), hash_of(carried));
   cloud.expect_valid();
 }

@@ -188,7 +188,7 @@ friction = 0.3
 [collisions]
 restitution = 0.2
 friction = 0.3
-[crowding]
+[adaptive_subdivision]
 every = 5
 most = 15
 least = 6
@@ -341,7 +341,7 @@ low = [5.0, -1.0, -1.0]
 high = [6.0, 6.0, 6.0]
 what = "remove"
 stranded = "absorb"
-[crowding]
+[adaptive_subdivision]
 every = 5
 most = 15
 least = 6

@@ -84,7 +84,7 @@ struct Swarm {
     if (added[0].location.place != Place::free) return false;
     radii.push_back(radius);
     velocities.push_back(velocity);
-    fates.push_back(ParticleStatus::alive);
+    statuses.push_back(ParticleStatus::alive);
     return true;
   }
   /// At random places where there is room; fewer where none is found.
@@ -102,7 +102,7 @@ struct Swarm {
   SphereReport step(const WallResponses& responses, double dt = 1.0) {
     targets.clear();
     for (std::size_t i = 0; i < radii.size(); ++i) targets.push_back(particles[i].position + velocities[i] * dt);
-    return stepper.advance(environment, particles, radii, targets, respond_with(responses, velocities, fates, dt));
+    return stepper.advance(environment, particles, radii, targets, respond_with(responses, velocities, statuses, dt));
   }
   /// Every centre is where its state says.
   void expect_valid() const {
@@ -115,7 +115,7 @@ struct Swarm {
   Particles particles;
   std::vector<double> radii;
   std::vector<Vec3> velocities;
-  std::vector<ParticleStatus> fates;
+  std::vector<ParticleStatus> statuses;
   std::vector<Vec3> targets;
   SphereStepper stepper;
 };

@@ -67,7 +67,7 @@ class BothWays {
   // Half of the targets are in planes across axes through vertices.
   void aim_at_planes() { at_planes_ = true; }
 
-  void split_at_most(unsigned parts) { options_.max_parts = parts; }
+  void split_at_most(unsigned parts) { options_.max_slices = parts; }
 
   // Half of the targets are many cells away.
   void aim_far_away() { far_away_ = true; }

@@ -33,7 +33,7 @@ def of_making() -> Calls:
         "Environment.validity": env.validity, "Environment.awaits_advance": lambda: env.awaits_advance(particles),
         "Environment.check_advance": lambda: env.check_advance(particles),
         "Environment.check_advance: refused": refused(
-            lambda: env.check_advance(particles, dc.StepOptions(max_parts=0))),
+            lambda: env.check_advance(particles, dc.StepOptions(max_slices=0))),
         "Environment.add": lambda: env.add(x), "Environment.add: one": lambda: env.add(
             dc.Particles(), state.at(), state.position),
         "Environment.add: set": lambda: env.add(dc.Particles(), x),
@@ -149,7 +149,7 @@ def wrong_answers() -> dict[str, dict[str, object]]:
         "type": {"respond": lambda contact, walls, earlier: "text", "per_contact": True},
         "no velocities": {"respond": dc.Reflect()}, "no response": {"respond": "slide"},
         "patch": {"respond": {"nowhere": dc.Slide()}, "velocities": np.zeros((COUNT, 3)), "dt": 1.0},
-        "options": {"options": dc.StepOptions(max_parts=0)}}
+        "options": {"options": dc.StepOptions(max_slices=0)}}
 
 
 def of_steps() -> Calls:

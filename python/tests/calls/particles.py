@@ -47,7 +47,7 @@ def of_states() -> Calls:
         "placement: refused": refused(lambda: dc.topology.placement(m, (12345, 0), corners, [0, 0, 0])),
         "ParticleState.at": state.at, "ParticleState.put": lambda: dc.topology.ParticleState().put((3, 2), [1, 2, 3]),
         "StepOptions.check": dc.StepOptions().check,
-        "StepOptions.check: refused": refused(dc.StepOptions(max_parts=0).check),
+        "StepOptions.check: refused": refused(dc.StepOptions(max_slices=0).check),
         "check_threads": lambda: dc.records.check_threads(1),
         "check_threads: refused": refused(lambda: dc.records.check_threads(10**6)),
         "max_threads": dc.max_threads, "is_radius": lambda: dc.predicates.is_radius(1.0), "is_mass": lambda: dc.predicates.is_mass(1.0),

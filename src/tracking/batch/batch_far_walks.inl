@@ -10,7 +10,7 @@
 
 #include "tracking/batch/batch_cell_walks.inl"
 #include "tracking/batch/batch_line_walks.inl"
-#include "tracking/batch/batch_part_walks.inl"
+#include "tracking/batch/batch_slice_walks.inl"
 #include "tracking/batch/batch_steps.inl"
 
 DARTCAST_BEGIN_KERNEL
@@ -29,7 +29,7 @@ void Batch<kind>::walk_lines() {
   begin_lines(far_walks_.data(), far_count_);
   pass_simplices<LineKind::to_target>([&](std::uint32_t l) { return start_next_line(l); });
   if constexpr (moved)
-    walk_first_parts();
+    walk_first_slices();
   else
     walk_farther();
   if constexpr (kind != CacheKind::none) cache_line_arrivals();
@@ -56,9 +56,9 @@ void Batch<kind>::walk_farther() {
 
 // Walks to begin next.
 template <CacheKind kind>
-inline void Batch<kind>::begin_lines(const Departure* walks, std::size_t count) {
-  departures_ = walks;
-  departure_count_ = count;
+inline void Batch<kind>::begin_lines(const WalkStart* walks, std::size_t count) {
+  walk_starts_ = walks;
+  walk_start_count_ = count;
   next_line_ = staged_ = 0;
 }
 
@@ -126,13 +126,13 @@ inline bool Batch<kind>::find_corners(std::uint32_t l, const StartNext& start_ne
 // Prepares four walks from number next_line_ on.
 template <CacheKind kind>
 inline void Batch<kind>::stage_lines() {
-  const std::size_t end = std::min(next_line_ + block, departure_count_);
+  const std::size_t end = std::min(next_line_ + block, walk_start_count_);
   for (std::size_t k = std::min(next_line_ + block - 4, end); k < end; ++k) {
-    __builtin_prefetch(departures_[k].record);
-    prefetch(now_, vertices_[departures_[k].particle]);
+    __builtin_prefetch(walk_starts_[k].record);
+    prefetch(now_, vertices_[walk_starts_[k].particle]);
   }
-  const std::size_t last = departure_count_ - 1;
-  const auto particle = [&](std::size_t k) { return departures_[std::min(next_line_ + k, last)].particle; };
+  const std::size_t last = walk_start_count_ - 1;
+  const auto particle = [&](std::size_t k) { return walk_starts_[std::min(next_line_ + k, last)].particle; };
   const Index4 i = {{particle(0), particle(1), particle(2), particle(3)}};
   const Corners4 v = simplices_of(now_, i);
   line_starts_ = LineStarts4(v, starts_of(i, v), targets_of(i));
@@ -142,9 +142,9 @@ inline void Batch<kind>::stage_lines() {
 // Begins the next walk that can begin, in lane l. Returns false where there is none.
 template <CacheKind kind>
 inline bool Batch<kind>::start_next_line(std::uint32_t l) {
-  while (next_line_ < departure_count_) {
+  while (next_line_ < walk_start_count_) {
     if (next_line_ == staged_) stage_lines();
-    const auto [i, record] = departures_[next_line_];
+    const auto [i, record] = walk_starts_[next_line_];
     const auto from = static_cast<unsigned>(next_line_ + 4 - staged_);
     ++next_line_;
     if (start_line(l, i, record, from)) return true;
@@ -235,7 +235,7 @@ template <LineKind line>
   LineWalks4& walks = line_walks_[l / 4];
   LinePlace* const at = &line_places_[l];
   if constexpr (line == LineKind::apart)
-    walks.pass(corners_in_parts(at, l));
+    walks.pass(corners_in_slices(at, l));
   else
     walks.pass(load_vec3x4(*at[0].corner, *at[1].corner, *at[2].corner, *at[3].corner));
   std::uint32_t walls = 0;
@@ -261,11 +261,11 @@ inline bool Batch<kind>::goes_on(std::uint32_t l) {
     const int side = walks.side_of_target(l % 4);
     if (side == 0) return apart ? defer(at.particle) : leave_to_rounds(at);
     at.tests += at.passed > 1 ? 1 : 0;  // in the first simplex the sides of all facets are counted
-    if (side > 0) return apart ? end_part(l, false) : arrive_by_line(passed_cursor(at));
+    if (side > 0) return apart ? end_slice(l, false) : arrive_by_line(passed_cursor(at));
     if constexpr (line == LineKind::to_cells) set_to_cells(l, false);
   }
   if (((at_wall_lanes_[l / 4] >> (l % 4)) & 1U) != 0) {
-    if (apart) return end_part(l, true);
+    if (apart) return end_slice(l, true);
     const WalkCursor cursor = passed_cursor(at);
     return end_at_wall(cursor, corners_of_walk(cursor), at.exit_facet);
   }

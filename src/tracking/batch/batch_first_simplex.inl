@@ -81,7 +81,7 @@ inline void Batch<kind>::sort_undecided(std::size_t k, std::size_t count) {
   const unsigned far = lanes_set(determinants.far_away());
   const unsigned farther = lanes_set(determinants.far_away(farther_coordinate));
   for (std::size_t l = 0; l < std::min<std::size_t>(4, count - k); ++l) {
-    const Departure& d = undecided_[k + l];
+    const WalkStart& d = undecided_[k + l];
     if (((far >> l) & 1U) != 0)
       add_far_walk(d, ((farther >> l) & 1U) != 0);
     else
@@ -90,7 +90,7 @@ inline void Batch<kind>::sort_undecided(std::size_t k, std::size_t count) {
 }
 
 template <CacheKind kind>
-inline void Batch<kind>::add_far_walk(const Departure& walk, bool farther) {
+inline void Batch<kind>::add_far_walk(const WalkStart& walk, bool farther) {
   if (!moved && farther && cells_positive_)
     farther_walks_[farther_count_++] = walk;
   else
@@ -288,7 +288,7 @@ inline std::uint32_t Batch<kind>::carry_four(const Index4& i, std::uint32_t coun
   for (std::uint32_t l = 0; l < count; ++l) {
     const std::uint32_t particle = i.at[l];
     if (((on >> l) & 1U) == 0) {
-      if (((far_away_ >> (particle - first)) & 1U) == 0 || !add_part_walk(particle, 1)) defer(particle);
+      if (((far_away_ >> (particle - first)) & 1U) == 0 || !add_slice_walk(particle, 1)) defer(particle);
       continue;
     }
     left_behind_[particle] = ((behind >> l) & 1U) != 0;

@@ -7,7 +7,7 @@
 //    with near targets leave by their exit facet.
 // 3. Far walks (batch_far_walks.inl) go along their lines. Where a sign is not proved they go on in rounds. The farthest
 //    pass whole hexahedra (batch_cell_walks.inl). Those of steps that are split end with the first part
-//    (batch_part_walks.inl).
+//    (batch_slice_walks.inl).
 // 4. Rounds (batch_walk.inl). In each, every walk finds its next simplex, is tested there, and arrives, goes on, stops
 //    at a wall, or is deferred where a sign is not proved. Arrivals leave a cache entry (batch_remember.inl).
 // 5. Impacts (batch_walls.inl). Four walks that end at walls at a time: the places where they meet them, where doubles
@@ -28,8 +28,8 @@
 #include "tracking/batch/batch_cell_walks.inl"
 #include "tracking/batch/batch_far_walks.inl"
 #include "tracking/batch/batch_first_simplex.inl"
-#include "tracking/batch/batch_part_walks.inl"
 #include "tracking/batch/batch_remember.inl"
+#include "tracking/batch/batch_slice_walks.inl"
 #include "tracking/batch/batch_split_steps.inl"
 #include "tracking/batch/batch_walk.inl"
 #include "tracking/batch/batch_walls.inl"

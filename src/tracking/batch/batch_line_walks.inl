@@ -210,7 +210,7 @@ struct LineResumptions4 {
 };
 
 // How walks go along lines: to the step's target; the same, but on to pass cells from the next hexahedron on; or apart
-// (batch_part_walks.inl).
+// (batch_slice_walks.inl).
 enum class LineKind : std::uint8_t { to_target, to_cells, apart };
 
 // Four walks. Slot i of a triangle: its corner i, and the side of the edge from the next corner to the one after.

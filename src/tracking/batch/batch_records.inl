@@ -64,14 +64,14 @@ inline ExitCandidate exit_candidate(std::uint32_t particle, unsigned behind, uns
   return {particle, static_cast<std::uint16_t>(behind), static_cast<std::uint16_t>(std::popcount(exact)), record};
 }
 // A walk in its first simplex.
-struct Departure {
+struct WalkStart {
   std::uint32_t particle;
   const std::uint32_t* record;  // of its cell
 };
-// A walk in the first part of a step of several.
-struct PartWalk {
+// A walk in the first slice of a step of several.
+struct SliceWalk {
   std::uint32_t particle;
-  std::uint32_t parts;
+  std::uint32_t slices;
   const std::uint32_t* record;  // of its cell
   double start[3];              // carried along
 

@@ -1,4 +1,4 @@
-// Steps that are split in parts: into how many, and the starts of their first walks (batch_part_walks.inl), four at a time.
+// Steps that are split in slices: into how many, and the starts of their first walks (batch_slice_walks.inl), four at a time.
 // Part of the batch's kernel (tracking/batch/batch_kernel.inl).
 #pragma once
 
@@ -7,14 +7,14 @@
 #include <cmath>
 #include <cstdint>
 
-#include "tracking/batch/batch_part_walks.inl"
+#include "tracking/batch/batch_slice_walks.inl"
 #include "tracking/batch/batch_steps.inl"
 
 DARTCAST_BEGIN_KERNEL
 namespace dartcast::detail::DARTCAST_SIMD {
 namespace {
 
-// As part_count() in tracking/carry.hpp, sum by sum: what the number of parts is the root of, rounded up.
+// As slice_count() in tracking/carry.hpp, sum by sum: what the number of slices is the root of, rounded up.
 class SplittingRule4 {
  public:
   SplittingRule4(const Corners4& before, const Corners4& after) {
@@ -35,7 +35,7 @@ class SplittingRule4 {
   }
 
   // own: the particles' motion relative to their simplices.
-  [[nodiscard]] Double4 parts_for(const Vec3x4& own, double tolerance) const {
+  [[nodiscard]] Double4 slices_for(const Vec3x4& own, double tolerance) const {
     return root(gradient_ * root(square(own)) / (2.0 * tolerance * edge_));
   }
 
@@ -45,7 +45,7 @@ class SplittingRule4 {
 };
 
 // Takes the steps in the mask `which` that are held, or that are split, out of the block: they walk apart, or are deferred.
-// Returns a mask of them. The others have one part.
+// Returns a mask of them. The others have one slice.
 template <CacheKind kind>
 inline std::uint32_t Batch<kind>::split_steps(std::uint32_t first, std::uint32_t which) {
   for (std::uint32_t left = which; left != 0; left &= left - 1)
@@ -72,11 +72,11 @@ unsigned Batch<kind>::split_four(const Index4& i, std::uint32_t count) {
   const Vec3x4 q = targets_of(i);
   // Unknown where the coordinates are not known, or the simplex is not proved to be positive.
   const Mask4 known = (w[0] == w[0]) & BatchDeterminants(now, now.corner[0]).proves_positive();
-  const Double4 root_of_parts = SplittingRule4(before, now).parts_for(q - combined(w, now), options_.tolerance);
-  Double4 parts{};
+  const Double4 root_of_slices = SplittingRule4(before, now).slices_for(q - combined(w, now), options_.tolerance);
+  Double4 slices{};
   for (unsigned l = 0; l < 4; ++l)
-    parts[l] = root_of_parts[l] > 1.0 ? std::min(std::ceil(root_of_parts[l]), double(options_.max_parts)) : 1.0;
-  const Double4 time = 1.0 / parts;
+    slices[l] = root_of_slices[l] > 1.0 ? std::min(std::ceil(root_of_slices[l]), double(options_.max_slices)) : 1.0;
+  const Double4 time = 1.0 / slices;
   const Corners4 v = between(before, now, time);
   const BatchDeterminants at_target(v, without_tiny(here + (q - here) * time));
   const Mask4 far = at_target.proves_positive() & at_target.far_away();
@@ -86,15 +86,15 @@ unsigned Batch<kind>::split_four(const Index4& i, std::uint32_t count) {
   for (std::uint32_t l = 0; l < count; ++l) {
     const std::uint32_t particle = i.at[l];
     const bool unknown = states_[particle].held || known[l] == 0;
-    if (!unknown && parts[l] == 1.0) continue;
+    if (!unknown && slices[l] == 1.0) continue;
     taken_out |= 1U << l;
-    const auto number = static_cast<std::uint32_t>(parts[l]);
+    const auto number = static_cast<std::uint32_t>(slices[l]);
     const std::uint32_t* const record = map_.record(states_[particle].cell);
     const bool walks = !unknown && far[l] != 0;
     if (walks && inside[l] != 0) {
       __builtin_prefetch(record);
-      part_walks_[part_count_++] = {particle, number, record, {start.x[l], start.y[l], start.z[l]}};
-    } else if (!walks || !add_part_walk(particle, number)) {
+      slice_walks_[slice_walk_count_++] = {particle, number, record, {start.x[l], start.y[l], start.z[l]}};
+    } else if (!walks || !add_slice_walk(particle, number)) {
       defer(particle);
     }
   }

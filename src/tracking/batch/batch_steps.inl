@@ -55,7 +55,7 @@ class Batch {
     if (kind == CacheKind::barycentric && !walls_match_) std::fill_n(flags_, size_, CacheFlags{0});
     std::fill_n(status_, size_, step_complete);
     const std::size_t exits = kind == CacheKind::barycentric ? start_by_coordinates() : start();
-    if ((far_count_ | farther_count_ | part_count_) != 0) walk_lines();
+    if ((far_count_ | farther_count_ | slice_walk_count_) != 0) walk_lines();
     std::size_t count = take_exits(exits);
     for (std::uint64_t round = 1; count > 0; ++round) {
       if (round > simplex_count_) {
@@ -128,7 +128,7 @@ class Batch {
   [[gnu::noinline]] void walk_lines();
   [[gnu::noinline]] void walk_farther();
   bool leave_to_cells(std::uint32_t l);
-  void begin_lines(const Departure* walks, std::size_t count);
+  void begin_lines(const WalkStart* walks, std::size_t count);
   template <LineKind line, class StartNext>
   void pass_simplices(const StartNext& start_next);
   template <LineKind line, class StartNext>
@@ -139,7 +139,7 @@ class Batch {
   bool resume_next_line(std::uint32_t l);
   void stage_resumed_lines();
   void set_to_cells(std::uint32_t l, bool to_cells);
-  void add_far_walk(const Departure& walk, bool farther);
+  void add_far_walk(const WalkStart& walk, bool farther);
   [[nodiscard]] unsigned row_behind(const CellWalk& walk) const;
   template <LineKind line>
   std::uint32_t pass_four(std::uint32_t l, std::uint32_t live);
@@ -155,19 +155,19 @@ class Batch {
   void cache_line_arrivals();
   [[nodiscard]] Vec3x4 starts_of(const Index4& i, const Corners4& now) const;
 
-  // Steps of several parts: batch_split_steps.inl.
+  // Steps of several slices: batch_split_steps.inl.
   std::uint32_t split_steps(std::uint32_t first, std::uint32_t which);
   [[gnu::noinline]] unsigned split_four(const Index4& i, std::uint32_t count);
 
-  // Walks apart, in the first parts of steps: batch_part_walks.inl.
-  [[gnu::noinline]] bool add_part_walk(std::uint32_t i, unsigned parts);
-  [[gnu::noinline]] void walk_first_parts();
-  bool start_next_part(std::uint32_t l);
-  void stage_parts();
-  [[nodiscard]] Vec3 target_of(std::uint32_t i, unsigned parts) const;
+  // Walks apart, in the first slices of steps: batch_slice_walks.inl.
+  [[gnu::noinline]] bool add_slice_walk(std::uint32_t i, unsigned slices);
+  [[gnu::noinline]] void walk_first_slices();
+  bool start_next_slice(std::uint32_t l);
+  void stage_slices();
+  [[nodiscard]] Vec3 target_of(std::uint32_t i, unsigned slices) const;
   [[nodiscard]] const Vec3* before_move(const Vec3* now) const;
-  [[nodiscard]] Vec3x4 corners_in_parts(const LinePlace* at, std::uint32_t l) const;
-  bool end_part(std::uint32_t l, bool at_wall);
+  [[nodiscard]] Vec3x4 corners_in_slices(const LinePlace* at, std::uint32_t l) const;
+  bool end_slice(std::uint32_t l, bool at_wall);
 
   // Whole cells of these: batch_cell_walks.inl.
   [[gnu::noinline]] void walk_cells();
@@ -259,10 +259,10 @@ class Batch {
   std::array<WalkCursor, max_batch> walks_;  // those that go on
   std::size_t in_rounds_ = 0;                // walks that begin there
   std::array<ExitCandidate, max_batch> exits_;
-  std::array<Departure, max_batch> undecided_;  // by coordinates
-  std::array<Departure, max_batch> far_walks_;
+  std::array<WalkStart, max_batch> undecided_;  // by coordinates
+  std::array<WalkStart, max_batch> far_walks_;
   std::size_t far_count_ = 0;
-  std::array<Departure, max_batch> farther_walks_;  // those that may pass whole cells
+  std::array<WalkStart, max_batch> farther_walks_;  // those that may pass whole cells
   std::size_t farther_count_ = 0;
   std::array<CellExit, max_batch> cell_exits_;
   std::array<SimplexCache4::Table<double>, max_batch / 4> previous_determinants_;  // before the move
@@ -271,9 +271,9 @@ class Batch {
   std::array<LinePlace, lines> line_places_;
   std::array<std::uint32_t, lines / 4> at_wall_lanes_;  // a bit for each
   std::array<RecordPool, CombinatorialMap::general_pool> record_pools_;
-  LineStarts4 line_starts_;      // of four walks
-  const Departure* departures_;  // walks to begin
-  std::size_t departure_count_;
+  LineStarts4 line_starts_;       // of four walks
+  const WalkStart* walk_starts_;  // walks to begin
+  std::size_t walk_start_count_;
   std::size_t next_line_;  // the next of these
   std::size_t staged_;     // walks before this one are in line_starts_
   std::array<std::uint32_t, max_batch> line_arrival_;
@@ -281,10 +281,10 @@ class Batch {
   std::array<FacetArrival, max_batch> facet_arrival_;
   std::uint32_t facet_arrivals_ = 0;
   std::uint32_t to_cells_;  // a bit for each lane: from the next face on the walk may pass whole hexahedra
-  std::array<PartWalk, max_batch> part_walks_;
-  std::size_t part_count_ = 0;
-  std::array<std::uint32_t, lines> part_of_line_;  // the number of its PartWalk
-  std::array<Double4, lines / 4> part_times_;      // of the step: the vertices are where they are then
+  std::array<SliceWalk, max_batch> slice_walks_;
+  std::size_t slice_walk_count_ = 0;
+  std::array<std::uint32_t, lines> slice_of_line_;  // the number of its SliceWalk
+  std::array<Double4, lines / 4> slice_times_;      // of the step: the vertices are where they are then
   LineResumptions4 resumed_lines_;
   CellWalkQueue by_cells_;
   std::array<CellWalks8, cell_lanes / 8> cell_walks_;

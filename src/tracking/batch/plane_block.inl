@@ -62,8 +62,8 @@ struct PlaneDeterminants4 {
 // less q - p. Then -r is their mean, weighted by the particle's coordinates: |r| <= max |d_i|. The rule's r is off from
 // that by at most m: its coordinates are right to 2^-26, and points are rounded. In squares, (a + b)^2 <= 17/16 a^2 +
 // 17 b^2 bounds that. The last line excludes overflow and underflow.
-inline Mask4 surely_one_part(const Triangles4& v, const Triangles4& w, const PlaneDeterminants4& was,
-                             const PlaneDeterminants4& will, const Vec2x4& p, const Vec2x4& q, double tolerance) {
+inline Mask4 surely_one_slice(const Triangles4& v, const Triangles4& w, const PlaneDeterminants4& was,
+                              const PlaneDeterminants4& will, const Vec2x4& p, const Vec2x4& q, double tolerance) {
   const Vec2x4 own = q - p;
   const Vec2x4 d0 = w[0] - v[0];
   const Vec2x4 d1 = w[1] - v[1];
@@ -135,7 +135,7 @@ PlaneBlock look_at_triangles(const PlaneVertices& vertices, const BatchSteps& st
       Triangles4 before;
       load_triangles(vertices.before, steps.vertices.data(), four, before);
       const PlaneDeterminants4 was(before, p);
-      goes = was.proves_coordinates() & surely_one_part(before, now, was, d, p, q, tolerance);
+      goes = was.proves_coordinates() & surely_one_slice(before, now, was, d, p, q, tolerance);
       if (inside != 15U || ((unusual >> k) & 15U) != 0) {
         const Vec2x4 x = carry(was, now);
         const Mask4 rests = (x.x == q.x) & (x.y == q.y);
