@@ -16,7 +16,7 @@ namespace dartcast {
 /// A step of a set of particles, watched for Environment::set_replay_hook().
 class WatchedStep {
  public:
-  /// Copies the particles as they are before the step. Targets and options must live as long.
+  /// Copies the particles as they are before the step. Targets must live as long.
   WatchedStep(const Environment& environment, const Particles& particles, std::span<const Vec3> targets,
               const StepOptions& options, bool simultaneous);
 
@@ -45,7 +45,7 @@ class WatchedStep {
   const Environment& environment_;
   Particles before_;
   std::span<const Vec3> targets_;
-  const StepOptions& options_;
+  StepOptions options_;
   bool simultaneous_;
   bool responds_ = false;
   std::mutex mutex_;                                                      // of the answers
