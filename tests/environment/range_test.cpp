@@ -14,6 +14,7 @@
 #include "dartcast/audit.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
+#include "dartcast/predicates.hpp"
 #include "dartcast/response.hpp"
 #include "dartcast/spheres.hpp"
 #include "dartcast/validity.hpp"

@@ -12,6 +12,7 @@
 #include "dartcast/events.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/simulation.hpp"
+#include "dynamics/sphere_pairs.hpp"
 #include "support/expectations.hpp"
 #include "support/meshes.hpp"
 
