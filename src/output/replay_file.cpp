@@ -63,8 +63,11 @@ CellType type_of(const std::string& name) {
 
 ReplayJson faces_json(const MeshData& mesh) {
   ReplayJson json = ReplayJson::array();
-  for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f)
-    json.push_back({{"patch", mesh.patch_names.at(mesh.patch_tags[f])}, {"points", mesh.patch_face(f)}});
+  for (std::size_t f = 0; f < mesh.patch_tags.size(); ++f) {
+    const auto name = mesh.patch_names.find(mesh.patch_tags[f]);
+    const bool is_cut = name != mesh.patch_names.end() && name->second == StepReplay::cut_patch;
+    json.push_back({{"patch", is_cut ? StepReplay::cut_patch : "wall"}, {"points", mesh.patch_face(f)}});
+  }
   return json;
 }
 

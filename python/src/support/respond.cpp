@@ -124,8 +124,8 @@ LibraryAnswers::LibraryAnswers(WallResponses by, py::object v, py::object s, dou
   const std::span<Vec3> written = writable_vectors(velocities, "velocities");
   size = written.size();
   if (statuses.is_none()) own.resize(size, ParticleStatus::alive);
-  const std::span<ParticleStatus> statuses = statuses.is_none() ? std::span(own) : writable_statuses(statuses);
-  callback = respond_with(responses, written, statuses, dt, acceleration);
+  const std::span<ParticleStatus> ends = statuses.is_none() ? std::span(own) : writable_statuses(statuses);
+  callback = respond_with(responses, written, ends, dt, acceleration);
 }
 
 void LibraryAnswers::expect_particles(std::size_t count) const {
