@@ -79,11 +79,11 @@ void bind_functions(py::module_& m) {
          const Typed<"NDArray[uint8] | None">& statuses, double dt, const Acceleration& acceleration) {
         const auto velocities = writable_vectors(given, "velocities");
         const std::vector<ParticleStatus> alive(statuses.is_none() ? velocities.size() : 0);
-        const auto statuses = statuses.is_none() ? std::span<const ParticleStatus>(alive) : statuses_of(statuses);
-        if (statuses.size() != velocities.size())
+        const auto now = statuses.is_none() ? std::span<const ParticleStatus>(alive) : statuses_of(statuses);
+        if (now.size() != velocities.size())
           throw InvalidArgument("hold_stopped: one velocity and one status per particle are needed");
         expect_report_of(report, velocities.size());
-        hold_stopped(report, responses_of(responses, nullptr), velocities, statuses, dt, acceleration);
+        hold_stopped(report, responses_of(responses, nullptr), velocities, now, dt, acceleration);
       },
       about("hold_stopped",
             "velocities: float64 (n, 3), written in place. statuses: uint8 (n,), or None where all are alive."));
