@@ -219,8 +219,30 @@ def draw_edges(figure: Any) -> None:
     axes[1].text(point[0] + 0.15, point[2] + 0.25, f"t = {step.contacts[0]['time_of_impact']:.2f}", color=HOT, fontsize=9)
 
 
+def draw_steps(figure: Any) -> None:
+    """The stages of a step: blue ones are run, and in orange ones it waits for others."""
+    axis = figure.subplots()
+    stages = {"start": (0, 0), "carry": (2, 0), "walk": (4, 0), "done": (6.4, 0), "contact": (4, 1.2), "on_way": (4, -1.4),
+              "in_batch": (0, -1.4)}
+    for name, (x, y) in stages.items():
+        waits = name in ("contact", "on_way", "in_batch")
+        axis.text(x, y, name, ha="center", va="center", fontsize=10,
+                  bbox={"boxstyle": "round,pad=0.5", "facecolor": "#fbeee4" if waits else FREE, "edgecolor": HOT if waits else PATH})
+    ways = [((0.38, 0), (1.58, 0), 0, "vertices moved", (0.97, 0.16)), ((0.1, 0.25), (3.75, 0.25), -0.25, "nothing moved", (1.8, 0.95)),
+            ((2.4, 0), (3.63, 0), 0, "", (0, 0)), ((3.6, -0.2), (2.45, -0.2), -0.3, "next slice", (2.75, -0.55)),
+            ((4.37, 0), (6.0, 0), 0, "at the target", (5.2, 0.16)), ((3.85, 0.32), (3.85, 0.87), 0, "wall", (3.5, 0.6)),
+            ((4.15, 0.87), (4.15, 0.32), 0, "answer", (4.65, 0.6)), ((3.85, -0.32), (3.85, -1.07), 0, "", (0, 0)),
+            ((4.15, -1.07), (4.15, -0.32), 0, "another rank goes on", (5.15, -0.75)),
+            ((0, -0.32), (0, -1.07), 0, "a batch begins", (0.75, -0.75)), ((0.6, -1.4), (3.72, -0.28), 0.2, "", (0, 0))]
+    for a, b, bend, words, at in ways:
+        arrow(axis, a, b, INK, bend=bend)
+        axis.text(*at, words, ha="center", va="center", fontsize=8, color="0.4")
+    bare(axis, xlim=(-0.8, 7), ylim=(-1.8, 1.6))
+
+
 FIGURES = {"map": (draw_map, (4.6, 3.6)), "simplices": (draw_simplices, (6.4, 3.2)), "walk": (draw_walk, (6.4, 3.7)),
-           "moving_wall": (draw_moving_wall, (7.2, 2.3)), "cut": (draw_cut, (7.2, 2.6)), "edges": (draw_edges, (7.2, 2.6))}
+           "moving_wall": (draw_moving_wall, (7.2, 2.3)), "cut": (draw_cut, (7.2, 2.6)), "edges": (draw_edges, (7.2, 2.6)),
+           "steps": (draw_steps, (7.2, 3.2))}
 
 
 def main() -> int:
