@@ -289,7 +289,7 @@ class Environment {
 
  private:
   friend class PartEnvironment;
-  friend std::unique_ptr<Environment> environment_as_it_is(MeshData mesh);
+  friend std::unique_ptr<Environment> environment_as_it_is(const MeshData& mesh);
 
   struct Members;  // src/environment/environment_members.hpp
   explicit Environment(std::unique_ptr<Members> members);

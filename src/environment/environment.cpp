@@ -336,7 +336,7 @@ void Environment::set_replay_hook(ReplayHook hook) { members_->replay_hook = std
 const ReplayHook& Environment::replay_hook() const { return members_->replay_hook; }
 
 // Repairs would turn the corners of cells that look inside out.
-std::unique_ptr<Environment> environment_as_it_is(MeshData mesh) {
+std::unique_ptr<Environment> environment_as_it_is(const MeshData& mesh) {
   MeshData copy = mesh;
   for (const Finding& f : check_and_repair(copy).defects)
     if (f.kind != "inverted" && f.kind != "flat") refuse(f);

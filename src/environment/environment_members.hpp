@@ -19,7 +19,7 @@ namespace dartcast {
 
 /// An environment of cells that were once valid, in positions that they have come to: corners may turn inwards where all
 /// simplices are positive. Throws InvalidMesh as Environment's constructor for all other defects.
-std::unique_ptr<Environment> environment_as_it_is(MeshData mesh);
+std::unique_ptr<Environment> environment_as_it_is(const MeshData& mesh);
 
 struct Environment::Members {
   Members(const MeshData& checked_mesh, Threads all);
