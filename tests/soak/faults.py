@@ -2,6 +2,7 @@
 """Plants faults in a copy of the sources, one after another, and says how long dartcast-soak takes to find each.
 
     tests/soak/faults.py FOLDER [NAME...]     FOLDER: for the copy and its build; NAME: of a fault; none: all
+    tests/soak/faults.py --check              whether the text of each fault is in the sources once
 
 A fault that is not found within ten minutes fails. The build is that of the preset release.
 """
@@ -29,8 +30,8 @@ FAULTS = {
                                  "    if (w.at_end) return state_.put(w.simplex, contact.point);",
                                  "    return state_.put(w.at_end ? w.simplex : w.wall_simplex, contact.point);"),
     "contacts: a call that throws keeps what it did": ("src/environment/environment.cpp",
-                                                       "respond && !detail::is_library_response(respond);",
-                                                       "respond && false;"),
+                                                       "answer && !detail::is_library_response(answer);",
+                                                       "answer && false;"),
     "edits: particles stay in blocked cells": ("src/environment/update_after_edit.cpp",
                                                "if (!map().is_free(at.cell)) return orphan(i, Place::blocked, at);",
                                                ""),
@@ -46,7 +47,11 @@ FAULTS = {
     "spheres: walls out of reach": ("src/spheres/sphere_way.cpp", "(sphere_.radius + slack_ + fastest) * (1.0 + 0x1p-20)",
                                     "(sphere_.radius + slack_ + 0.5 * fastest)"),
     "checkpoint: without velocities": ("src/simulation/particle_system_checkpoint.cpp",
-                                       "velocities_.push_back(p.velocity);", "velocities_.emplace_back();"),
+                                       "  set_.table = std::move(table);\n",
+                                       "  set_.table = std::move(table);\n  for (Vec3& v : set_.velocities()) v = {};\n"),
+    "replays: without walls between free cells": ("src/tracking/cells_around.cpp",
+                                                  "copy.mesh().add_patch_face(corners, parts_free ? wall : cut);",
+                                                  "if (!parts_free) copy.mesh().add_patch_face(corners, cut);"),
     "ranks: walls where they were": ("src/tracking/batch/travelling_step.cpp",
                                      "wall.now[i] = complex_.positions()[v];",
                                      "wall.now[i] = complex_.previous_positions()[v];"),
@@ -62,10 +67,22 @@ def build(copy: pathlib.Path) -> None:
         sys.exit(f"{copy}: the build failed")
 
 
+def check() -> int:
+    counts = {name: (ROOT / file).read_text().count(old) for name, (file, old, _) in FAULTS.items()}
+    for name, count in counts.items():
+        if count != 1:
+            print(f"{FAULTS[name][0]}: the text of '{name}' is there {count} times: write the fault anew")
+    return 0 if all(count == 1 for count in counts.values()) else 1
+
+
 def main() -> int:
+    if sys.argv[1:] == ["--check"]:
+        return check()
     copy = pathlib.Path(sys.argv[1]).resolve()
     names = sys.argv[2:] or list(FAULTS)
     if not copy.exists() and run("git", "clone", "-q", str(ROOT), str(copy), cwd=ROOT) != 0:
+        return 2
+    if check() != 0:
         return 2
     run("cmake", "--preset", "release", "-DDARTCAST_TESTS=ON", cwd=copy)
     missed = 0
@@ -73,8 +90,6 @@ def main() -> int:
         file, old, new = FAULTS[name]
         path = copy / file
         text = path.read_text()
-        if text.count(old) != 1:
-            sys.exit(f"{file}: the text of '{name}' is there {text.count(old)} times: write the fault anew")
         path.write_text(text.replace(old, new))
         try:
             build(copy)

@@ -37,44 +37,47 @@ struct From {
   const char* name;
 };
 
+// A tuple of these is made from what Python gives, so they convert by themselves.
+// NOLINTBEGIN(google-explicit-constructor)
+
 /// An argument of a C++ function, from what Python gives for it. It is made and ended with Python's lock.
 template <class Argument>
 struct Given {
   using Python = std::remove_cvref_t<Argument>;
   Python value;
-  Given(const From<Python>& from) : value(from.given) {}  // NOLINT(google-explicit-constructor): made in a tuple
+  Given(const From<Python>& from) : value(from.given) {}
 };
 template <class T>
 struct Given<std::span<const T>> {
   using Python = std::vector<T>;
   Python value;
-  Given(const From<Python>& from) : value(from.given) {}  // NOLINT(google-explicit-constructor)
+  Given(const From<Python>& from) : value(from.given) {}
 };
 template <>
 struct Given<std::span<const Vec3>> {
   using Python = Typed<"Points">;
   Python array;
   std::span<const Vec3> value;
-  Given(const From<Python>& from) : array(from.given), value(vectors(array, from.name)) {}  // NOLINT
+  Given(const From<Python>& from) : array(from.given), value(vectors(array, from.name)) {}
 };
 template <>
 struct Given<std::span<const double>> {
   using Python = Typed<"Floats">;
   Python array;
   std::span<const double> value;
-  Given(const From<Python>& from) : array(from.given), value(numbers(array, from.name)) {}  // NOLINT
+  Given(const From<Python>& from) : array(from.given), value(numbers(array, from.name)) {}
 };
 template <>
 struct Given<std::span<const std::uint32_t>> {
   using Python = Typed<"Integers">;
   std::vector<std::uint32_t> value;
-  Given(const From<Python>& from) : value(indices(from.given, from.name)) {}  // NOLINT
+  Given(const From<Python>& from) : value(indices(from.given, from.name)) {}
 };
 template <>
 struct Given<std::span<const std::uint8_t>> {
   using Python = Typed<"Marks">;
   std::vector<std::uint8_t> value;
-  Given(const From<Python>& from) {  // NOLINT
+  Given(const From<Python>& from) {
     const auto given = marks(from.given, from.name);
     value.assign(given.begin(), given.end());
   }
@@ -83,21 +86,21 @@ template <>
 struct Given<Threads> {
   using Python = Threads;
   Threads value;
-  Given(const From<Threads>& from) : value(from.given) { check_threads(value); }  // NOLINT
+  Given(const From<Threads>& from) : value(from.given) { check_threads(value); }
 };
 template <>
 struct Given<const MeshData&> {
   using Python = MeshData;
   const MeshData& value;
   MeshUse use;
-  Given(const From<MeshData>& from) : value((check_arrays(from.given), from.given)), use(from.given) {}  // NOLINT
+  Given(const From<MeshData>& from) : value((check_arrays(from.given), from.given)), use(from.given) {}
 };
 template <class Object, class Handle>
 struct GivenInHandle {
   using Python = Handle;
   Use use;
   Object& value;
-  GivenInHandle(const From<Handle>& from) : use(from.given.use()), value(object(from.given)) {}  // NOLINT
+  GivenInHandle(const From<Handle>& from) : use(from.given.use()), value(object(from.given)) {}
 
  private:
   static Object& object(const Handle& handle) {
@@ -116,6 +119,7 @@ template <> struct Given<const Particles&> : GivenInHandle<const Particles, Part
 template <> struct Given<ComplexEdit&> : GivenInHandle<ComplexEdit, EditHandle> { using GivenInHandle::GivenInHandle; };
 template <> struct Given<Transaction&> : GivenInHandle<Transaction, TransactionHandle> { using GivenInHandle::GivenInHandle; };
 // clang-format on
+// NOLINTEND(google-explicit-constructor)
 
 // Ids must be those of the map. All else C++ checks by itself.
 inline void expect(const CombinatorialMap& map, Cell c) { expect_cell(map, c); }
