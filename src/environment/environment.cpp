@@ -162,6 +162,18 @@ StepReport Environment::Members::advance(Particles& particles, std::span<const V
   return report;
 }
 
+template <class Callback, class Take>
+StepReport Environment::Members::watched(const Environment& environment, Particles& particles,
+                                         std::span<const Vec3> targets, const StepOptions& options,
+                                         const Callback& respond, const Take& take) const {
+  if (!replay_hook) return take(respond);
+  WatchedStep step(environment, particles, targets, options, false);
+  const Callback noted = step.noted(respond);
+  StepReport report = step.run([&] { return take(noted); });
+  step.check(particles.states(), particles.details().weights);
+  return report;
+}
+
 std::vector<Vec3> Environment::Members::with_steiner_points(std::span<const Vec3> positions) const {
   check_positions(positions);
   std::vector<Vec3> all(positions.begin(), positions.end());
@@ -308,12 +320,7 @@ StepReport Environment::advance(Particles& particles, std::span<const Vec3> targ
         particles, targets,
         detail::BatchStepper(complex(), awaits_advance(particles), threads(), options, answer, may_throw));
   };
-  if (!members_->replay_hook) return take(respond);
-  WatchedStep watched(*this, particles, targets, options, false);
-  const ContactCallback noted = watched.noted(respond);
-  StepReport report = watched.run([&] { return take(noted); });
-  watched.check(particles.states(), particles.details().weights);
-  return report;
+  return members_->watched(*this, particles, targets, options, respond, take);
 }
 
 StepReport Environment::advance_in_rounds(Particles& particles, std::span<const Vec3> targets,
@@ -324,12 +331,7 @@ StepReport Environment::advance_in_rounds(Particles& particles, std::span<const 
     return members_->advance(particles, targets,
                              detail::BatchStepper(complex(), awaits_advance(particles), threads(), options, answer));
   };
-  if (!members_->replay_hook) return take(respond);
-  WatchedStep watched(*this, particles, targets, options, false);
-  const RoundCallback noted = watched.noted(respond);
-  StepReport report = watched.run([&] { return take(noted); });
-  watched.check(particles.states(), particles.details().weights);
-  return report;
+  return members_->watched(*this, particles, targets, options, respond, take);
 }
 
 void Environment::set_replay_hook(ReplayHook hook) { members_->replay_hook = std::move(hook); }

@@ -37,6 +37,11 @@ struct Environment::Members {
   /// Precondition: check_advance() passes.
   StepReport advance(Particles& particles, std::span<const Vec3> targets, const detail::BatchStepper& stepper) const;
 
+  /// Calls take(respond), which takes the step; watched, if there is a replay hook.
+  template <class Callback, class Take>
+  StepReport watched(const Environment& environment, Particles& particles, std::span<const Vec3> targets,
+                     const StepOptions& options, const Callback& respond, const Take& take) const;
+
   CellComplex complex;
   Threads threads;
   std::uint64_t id;
