@@ -37,6 +37,7 @@ struct SolidScene;
 struct Event;
 struct EventLog;
 struct RemeshScene;
+struct ResolvedScene;
 struct Scene;
 struct SimulationState;
 struct Statistics;
@@ -385,8 +386,7 @@ class Simulation {
   [[nodiscard]] const Parts& parts() const { return *parts_; }
 
  private:
-  void make(const Scene& scene, Threads threads, Ranks* ranks, Partition partition);
-
+  void build(ResolvedScene& scene);
   std::unique_ptr<Parts> parts_;
 };
 

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "base/digest.hpp"
 #include "dartcast/error.hpp"
 
 namespace dartcast {
@@ -78,6 +79,12 @@ std::string read_bytes(const std::filesystem::path& path) {
   in.read(bytes.data(), static_cast<std::streamsize>(size));
   if (static_cast<std::uintmax_t>(in.gcount()) != size) throw InvalidMesh("the file cannot be read to its end");
   return bytes;
+}
+
+std::uint64_t file_digest(const std::filesystem::path& path) {
+  if (file_bytes(path) == 0) return 0;
+  const std::string bytes = read_bytes(path);
+  return digest(bytes);
 }
 
 bool FileText::at_end() {

@@ -15,6 +15,9 @@ std::uint64_t file_bytes(const std::filesystem::path& path);
 /// All bytes of a regular file. Throws InvalidMesh where it cannot be read.
 std::string read_bytes(const std::filesystem::path& path);
 
+/// A number for these bytes (base/digest.hpp); 0 if there are none. Throws as read_bytes().
+std::uint64_t file_digest(const std::filesystem::path& path);
+
 /// Throws InvalidMesh where a regular file starts with zeros, so that a sparse file is not read for nothing. Its first
 /// 4096 bytes are looked at.
 void refuse_zeros(const std::filesystem::path& path);

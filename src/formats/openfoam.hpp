@@ -8,7 +8,7 @@
 
 #include "dartcast/mesh_files.hpp"
 #include "dartcast/vec3.hpp"
-#include "formats/field_series.hpp"
+#include "formats/file_series.hpp"
 #include "formats/parsed_mesh.hpp"
 
 namespace dartcast {

@@ -12,7 +12,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_files.hpp"
 #include "dartcast/run.hpp"
-#include "formats/field_series.hpp"
+#include "formats/file_series.hpp"
 #include "formats/openfoam.hpp"
 #include "formats/point_file.hpp"
 #include "output/recording.hpp"

@@ -35,7 +35,6 @@ class Stopwatch {
 
 void describe(const Environment& environment, Summary& summary) {
   const CombinatorialMap& map = environment.map();
-  summary.threads = thread_count(environment.threads());
   summary.cells = map.cell_count();
   summary.free_cells = 0;
   for (const Cell c : map.cells()) summary.free_cells += map.is_free(c) ? 1 : 0;
@@ -205,6 +204,7 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
     throw InvalidArgument(fmt::format("run: {} steps; give at most {}", *options.steps, max_steps));
   Summary summary;
   summary.scene = scene.name;
+  summary.threads = thread_count(options.threads);
   summary.ranks = options.ranks != nullptr ? options.ranks->size() : 1;
   summary.deforms = !scene.deformation.empty();
   if (!scene.events.empty() || scene.remesh.every > 0 || scene.adaptive_subdivision.every > 0)
@@ -213,7 +213,8 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   const Stopwatch load;
   ReadOptions read{{}, options.max_memory, false, {}};
   if (!options.folder.empty()) read.kept_mesh = options.folder / kept_mesh_name;
-  LoadedScene loaded = loaded_scene(scene_to_run(scene, options), read, options);
+  Scene wanted = scene_to_run(scene, options);
+  LoadedScene loaded = loaded_scene(std::move(wanted), read, options);
   summary.skipped = std::move(loaded.skipped);
   summary.warnings = std::move(loaded.warnings);
   const std::uint64_t steps = options.steps.value_or(scene.motion.steps);

@@ -24,10 +24,7 @@ namespace {
 std::string mark_of(const SurfaceScene& scene) {
   std::string values = fmt::format("{} {:a} {:a} {} {:a} {}", scene.outside, scene.box, scene.size, scene.cap,
                                    scene.angle, static_cast<int>(scene.mesher));
-  for (const NamedSurface& s : scene.surfaces) {
-    const bool there = file_bytes(s.file) > 0;  // if not, mesh_surfaces() says so
-    values += fmt::format(" {} {}", s.region, there ? digest(read_bytes(s.file)) : 0);
-  }
+  for (const NamedSurface& s : scene.surfaces) values += fmt::format(" {} {}", s.region, file_digest(s.file));
   return fmt::format("$Comments\ndartcast surface mesh {:016x}\n$EndComments\n", digest(values));
 }
 

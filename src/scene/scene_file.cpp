@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "dartcast/error.hpp"
-#include "scene/file_series.hpp"
+#include "formats/file_series.hpp"
 #include "scene/scene_events.hpp"
 #include "scene/scene_fields.hpp"
 #include "scene/scene_mesh_keys.hpp"

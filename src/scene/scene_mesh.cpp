@@ -1,4 +1,4 @@
-// Reads the files that a scene names.
+// Reads the files that a scene names; then looks up in the mesh what the scene names there.
 #include "scene/scene_mesh.hpp"
 
 #include <utility>
@@ -7,14 +7,15 @@
 #include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_files.hpp"
 #include "dartcast/scene_file.hpp"
+#include "formats/cells_of_scene.hpp"
 #include "formats/checked_file.hpp"
+#include "formats/field_files.hpp"
+#include "formats/file_series.hpp"
+#include "formats/frame_files.hpp"
+#include "formats/seed_file.hpp"
 #include "formats/skip_in_file.hpp"
 #include "mesh/patch_walls.hpp"
-#include "scene/file_series.hpp"
-#include "scene/frame_files.hpp"
 #include "scene/kept_mesh.hpp"
-#include "scene/scene_fields.hpp"
-#include "scene/seed_file.hpp"
 #include "simulation/scene_environment.hpp"
 #include "simulation/with_name.hpp"
 
@@ -41,7 +42,7 @@ void scale_points(MeshFile& file, double scale) {
 
 }  // namespace
 
-SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& options, Threads threads) {
+SceneMesh read_scene_mesh(const EnvironmentScene& scene, const ReadOptions& options, Threads threads) {
   ReadOptions read = options;
   read.linearise = scene.linearise;
   if (const auto* patches = std::get_if<PatchArray>(&scene.patches)) read.patch_array = patches->name;
@@ -54,23 +55,36 @@ SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& opti
     if (warning.kind == "bad_cells") result.skipped = warning;
     if (warning.kind == "cyclic") result.warnings.push_back(warning);
   }
-  with_mesh_name(scene.mesh, [&] { select_cells_and_patches(result.mesh, scene); });
-  add_finding(result.warnings, inner_patch_faces(result.mesh));
   return result;
 }
 
-void load_all_but_mesh(Scene& scene, const MeshData* mesh, const ReadOptions& options) {
+void resolve_mesh(SceneMesh& read, const Scene& scene) {
+  with_mesh_name(scene.environment.mesh, [&] {
+    select_cells_and_patches(read.mesh, scene.environment);
+    check_patches(scene, read.mesh);
+  });
+  add_finding(read.warnings, inner_patch_faces(read.mesh));
+}
+
+SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& options) {
+  SceneMesh read = read_scene_mesh(scene, options);
+  with_mesh_name(scene.mesh, [&] { select_cells_and_patches(read.mesh, scene); });
+  add_finding(read.warnings, inner_patch_faces(read.mesh));
+  return read;
+}
+
+void read_all_but_mesh(Scene& scene, const MeshData* mesh, const ReadOptions& options) {
   ReadOptions read = options;
   read.linearise = scene.environment.linearise;
+  const CellsOfScene cells = mesh != nullptr && scene.environment.skip_bad_cells ? CellsOfScene(*mesh) : CellsOfScene();
   for (DeformationScene& s : scene.deformation) {
     if (s.frames.empty()) continue;
     FieldSeries series = file_series({"deformation", {}, std::exchange(s.frames, {}), s.step.times, s.spacing});
     s.step.times = std::move(series.times);
-    s.step.reader = frame_reader(std::move(series.files), mesh, scene.environment, read);
+    s.step.reader = frame_reader(std::move(series.files), mesh, cells, scene.environment.scale, read);
   }
   if (mesh != nullptr) {
-    for (FieldScene* field : {&scene.motion.field, &scene.motion.force})
-      load_field(*field, scene.environment, *mesh, read);
+    for (FieldScene* field : {&scene.motion.field, &scene.motion.force}) read_field_files(*field, *mesh, cells, read);
   }
   for (ParticlesScene& p : scene.particles) {
     auto* placed = std::get_if<PlacedParticles>(&p.source);
@@ -89,12 +103,12 @@ void load_all_but_mesh(Scene& scene, const MeshData* mesh, const ReadOptions& op
 }
 
 LoadedScene load_scene_files(Scene scene, const ReadOptions& options, Threads threads) {
-  SceneMesh loaded = load_scene_mesh(scene.environment, options, threads);
-  with_mesh_name(scene.environment.mesh, [&] { check_patches(scene, loaded.mesh); });
-  load_all_but_mesh(scene, &loaded.mesh, options);
+  SceneMesh read = read_scene_mesh(scene.environment, options, threads);
+  read_all_but_mesh(scene, &read.mesh, options);
+  resolve_mesh(read, scene);
   scene.environment = EnvironmentScene{};
-  scene.environment.mesh = std::move(loaded.mesh);
-  return {std::move(scene), std::move(loaded.skipped), std::move(loaded.warnings)};
+  scene.environment.mesh = std::move(read.mesh);
+  return {std::move(scene), std::move(read.skipped), std::move(read.warnings)};
 }
 
 }  // namespace dartcast

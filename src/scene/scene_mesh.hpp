@@ -39,12 +39,19 @@ auto with_mesh_name(const MeshSource& mesh, Make&& make) {
   }
 }
 
-/// Only the options `max_memory` and `kept_mesh` have an effect. Throws InvalidMesh with the mesh file's name where the
-/// mesh is refused, or a region, array or patch that the scene names is not in it.
-SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& options = {}, Threads threads = {});
+/// Reads or makes the mesh. Only the options `max_memory` and `kept_mesh` have an effect. Throws InvalidMesh with the mesh
+/// file's name if the mesh is refused.
+SceneMesh read_scene_mesh(const EnvironmentScene& scene, const ReadOptions& options = {}, Threads threads = {});
 
-/// Reads all other files that the scene names. `mesh`: the scene's, loaded; null: this process has a part of it at most,
-/// and the scene has no fields from files.
-void load_all_but_mesh(Scene& scene, const MeshData* mesh, const ReadOptions& options);
+/// Sets free cells and patches of the mesh as the scene says. Throws as select_cells_and_patches() and check_patches(), with
+/// the mesh file's name.
+void resolve_mesh(SceneMesh& read, const Scene& scene);
+
+/// Reads an environment, and sets its free cells and patches. Errors have the mesh file's name.
+SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& options = {});
+
+/// Reads all other files that the scene names. `mesh`: the scene's, read; null: this process has a part of it at most,
+/// the scene has no fields from files, and leaves no cells out if it has frames.
+void read_all_but_mesh(Scene& scene, const MeshData* mesh, const ReadOptions& options);
 
 }  // namespace dartcast

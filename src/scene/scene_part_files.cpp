@@ -71,7 +71,7 @@ void refuse(bool has, const char* what) {
         what));
 }
 
-// As load_scene_mesh() does with a whole mesh.
+// As read_scene_mesh() and resolve_mesh() do with a whole mesh.
 void finish_piece(MeshData& mesh, const EnvironmentScene& scene, Ranks& ranks) {
   refuse(scene.skip_bad_cells, "cells to leave out");
   refuse(std::holds_alternative<PatchAngle>(scene.patches), "patches by their angle");
@@ -87,8 +87,8 @@ void finish_piece(MeshData& mesh, const EnvironmentScene& scene, Ranks& ranks) {
 MeshPart sent_part(const Scene& scene, Ranks& ranks, const ReadOptions& options, Threads threads, LoadedScene& loaded) {
   std::vector<std::string> parts(ranks.size());
   if (ranks.rank() == 0) {
-    SceneMesh whole = load_scene_mesh(scene.environment, options, threads);
-    with_mesh_name(scene.environment.mesh, [&] { check_patches(scene, whole.mesh); });
+    SceneMesh whole = read_scene_mesh(scene.environment, options, threads);
+    resolve_mesh(whole, scene);
     loaded.skipped = std::move(whole.skipped);
     loaded.warnings = std::move(whole.warnings);
     const std::vector<std::uint32_t> owners = partition(whole.mesh, ranks.size());
@@ -121,7 +121,7 @@ LoadedScene load_scene_part(Scene scene, Ranks& ranks, const ReadOptions& option
   } else {
     part = sent_part(scene, ranks, options, threads, loaded);
   }
-  load_all_but_mesh(scene, nullptr, options);
+  read_all_but_mesh(scene, nullptr, options);
   scene.environment = EnvironmentScene{};
   scene.environment.mesh = std::move(part);
   loaded.scene = std::move(scene);

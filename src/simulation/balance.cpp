@@ -14,9 +14,6 @@
 #include "parts/bisected.hpp"
 #include "parts/moved_part.hpp"
 #include "parts/part_cutter.hpp"
-#include "simulation/scene_environment.hpp"
-#include "simulation/scene_field.hpp"
-#include "simulation/scene_part.hpp"
 #include "simulation/simulation_parts.hpp"
 
 namespace dartcast {
@@ -89,19 +86,6 @@ std::vector<std::uint32_t> divided(const MeshPart& part, const std::vector<std::
 
 }  // namespace
 
-void furnish(Simulation::Parts& parts, const Scene& scene, const MeshData& mesh,
-             std::span<const std::uint32_t> points) {
-  const CellComplex& complex = parts.environment.complex();
-  if (const auto field = scene_field(scene.motion.field, "the velocity field", mesh, complex))
-    parts.particles.aiming().set_field(*field);
-  if (const auto force = scene_field(scene.motion.force, "the force", mesh, complex))
-    parts.particles.aiming().set_force(*force);
-  if (scene.deformation.empty()) return;
-  std::vector<DeformationStep> steps = deformation_steps(scene.deformation, mesh);
-  if (!points.empty()) steps = steps_of_part(std::move(steps), points);
-  parts.motion.set_deformation(Deformation(std::move(steps), mesh.points));
-}
-
 void balance(Simulation::Parts& parts) {
   Ranks& ranks = *parts.particles.options().ranks;
   const MeshPart& part = *parts.part_mesh;
@@ -116,7 +100,7 @@ void balance(Simulation::Parts& parts) {
   MeshPart moved = moved_part(part, next, ranks);
   parts.part->change(moved);
   *parts.part_mesh = std::move(moved);
-  furnish(parts, *parts.spread_scene, parts.part_mesh->mesh, parts.part_mesh->points);
+  parts.set_motion(parts.motion_of_part(*parts.part_mesh, parts.environment.complex()));
   parts.inlets.change_part(parts.particles.sampled_part());
   parts.motion.stand_at(parts.motion.steps());
   parts.particles.take_over(ranks.exchange(leaving));

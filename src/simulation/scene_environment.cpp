@@ -1,8 +1,7 @@
-// Generates the mesh of a scene, selects its free cells and patches, and finds its point arrays.
+// Generates the mesh of a scene, and selects its free cells and patches.
 #include "simulation/scene_environment.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <variant>
@@ -49,17 +48,6 @@ void select_free_by_value(MeshData& mesh, const FreeValues& by_value) {
   select_free_regions(mesh, tags);
 }
 
-const DataArray& point_array(const MeshData& mesh, const std::string& name, std::size_t components) {
-  std::vector<std::string> known;
-  for (const DataArray& a : mesh.point_data) {
-    if (a.name == name && a.components == components) return a;
-    known.push_back(fmt::format("{} ({})", a.name, a.components));
-  }
-  throw InvalidMesh(
-      fmt::format("the mesh has no point array '{}' of {} components; its point arrays (components) are: {}", name,
-                  components, known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
-}
-
 }  // namespace
 
 MeshData generated_mesh(const MeshSource& source) { return std::visit(Generator{}, source); }
@@ -93,27 +81,6 @@ MeshData scene_mesh(const EnvironmentScene& scene) {
   if (!report.valid()) throw InvalidMesh("the scene's mesh: " + report.defects.front().message);
   select_cells_and_patches(mesh, scene);
   return mesh;
-}
-
-std::vector<Vec3> point_vectors(const MeshData& mesh, const std::string& array) {
-  const DataArray& data = point_array(mesh, array, 3);
-  std::vector<Vec3> result(mesh.points.size());
-  for (std::size_t i = 0; i < result.size(); ++i) {
-    result[i] = {data.values[3 * i], data.values[3 * i + 1], data.values[3 * i + 2]};
-  }
-  return result;
-}
-
-std::vector<DeformationStep> deformation_steps(std::span<const DeformationScene> scene, const MeshData& mesh) {
-  std::vector<DeformationStep> steps;
-  for (const DeformationScene& s : scene) {
-    if (!s.frames.empty())
-      throw InvalidArgument("the deformation's frames have not been read; call load_scene_files() first");
-    DeformationStep& step = steps.emplace_back(s.step);
-    if (!s.field.empty()) step.field = point_vectors(mesh, s.field);
-    if (!s.path.empty()) step.path = point_array(mesh, s.path, 1).values;
-  }
-  return steps;
 }
 
 }  // namespace dartcast

@@ -1,9 +1,5 @@
-// The mesh of a scene, and what its arrays give: without any file.
+// The mesh of a scene, without any file.
 #pragma once
-
-#include <span>
-#include <string>
-#include <vector>
 
 #include "dartcast/mesh_data.hpp"
 #include "dartcast/scene.hpp"
@@ -25,12 +21,5 @@ void check_patches(const Scene& scene, const MeshData& mesh);
 /// The mesh with scale, free cells and patches as the scene says. Throws InvalidArgument where something must be read
 /// first, and InvalidMesh.
 MeshData scene_mesh(const EnvironmentScene& scene);
-
-/// A point array of three components as vectors. Throws InvalidMesh that names the arrays there are.
-std::vector<Vec3> point_vectors(const MeshData& mesh, const std::string& array);
-
-/// The deformation's steps, with arrays taken from the mesh. Throws InvalidMesh as point_vectors(), and InvalidArgument
-/// where frames have not been read.
-std::vector<DeformationStep> deformation_steps(std::span<const DeformationScene> scene, const MeshData& mesh);
 
 }  // namespace dartcast

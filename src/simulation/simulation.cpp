@@ -34,7 +34,7 @@ Simulation::~Simulation() = default;
 //  5. invalid cells are remeshed and crowded cells are subdivided, where that is due.
 const SimulationStep& Simulation::step() {
   constexpr std::uint64_t steps_between_balances = 10;
-  if (parts_->spread_scene && steps() % steps_between_balances == 0) balance(*parts_);
+  if (parts_->motion_of_part && steps() % steps_between_balances == 0) balance(*parts_);
   const double begin = time();
   parts_->motion.load_step();
   parts_->particles.aiming().load_step();
@@ -120,26 +120,26 @@ void Simulation::go_to(std::uint64_t steps) {
 }
 
 void Simulation::set_field(VelocityField field) {
-  parts_->spread_scene.reset();
+  parts_->motion_of_part = {};
   parts_->particles.aiming().set_field(std::move(field));
 }
 void Simulation::set_force(VectorField force) {
-  parts_->spread_scene.reset();
+  parts_->motion_of_part = {};
   parts_->particles.aiming().set_force(std::move(force));
 }
 void Simulation::set_deformation(Deformation deformation) {
-  parts_->spread_scene.reset();
+  parts_->motion_of_part = {};
   parts_->motion.set_deformation(std::move(deformation));
 }
 
 void Simulation::pull(std::span<const Vec3> displacement, double duration) {
-  parts_->spread_scene.reset();
+  parts_->motion_of_part = {};
   parts_->motion.pull(displacement, duration);
 }
 
 void Simulation::add_inlet(Patch patch, double rate, const Vec3& velocity, double radius,
                            std::span<const double> user_data) {
-  parts_->spread_scene.reset();
+  parts_->motion_of_part = {};
   parts_->inlets.add(patch, rate, {velocity, radius, user_data}, parts_->particles.sampled_part());
 }
 

@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "dartcast/scene.hpp"
 #include "dartcast/simulation.hpp"
 #include "environment/part_environment.hpp"
 #include "simulation/bodies_component.hpp"
@@ -13,6 +12,7 @@
 #include "simulation/event_scheduler.hpp"
 #include "simulation/inlets.hpp"
 #include "simulation/particle_system.hpp"
+#include "simulation/resolved_scene.hpp"
 #include "simulation/solids_component.hpp"
 #include "simulation/statistics_component.hpp"
 
@@ -39,21 +39,28 @@ struct Simulation::Parts {
     });
   }
 
+  using MotionOfPart = decltype(ResolvedScene::motion_of_part);
+
   /// The environment is this part of one.
-  void spread(MeshPart mesh, const Scene& scene) {
-    Scene rest = scene;
-    rest.environment = {};  // its mesh is the part from now on
-    spread_scene = std::make_unique<Scene>(std::move(rest));
+  void spread(MeshPart mesh, MotionOfPart motion_of) {
+    motion_of_part = std::move(motion_of);
     part = std::make_unique<PartEnvironment>(environment, mesh, *particles.options().ranks);
     part_mesh = std::make_unique<MeshPart>(std::move(mesh));
     particles.set_part(*part);
   }
 
+  /// Sets all that belongs to the points of the mesh.
+  void set_motion(ResolvedMotion resolved) {
+    if (resolved.field) particles.aiming().set_field(std::move(*resolved.field));
+    if (resolved.force) particles.aiming().set_force(std::move(*resolved.force));
+    if (resolved.deformation) motion.set_deformation(std::move(*resolved.deformation));
+  }
+
   std::unique_ptr<Environment> own_environment;
   std::unique_ptr<PartEnvironment> part;  // none: the environment is whole
   std::unique_ptr<MeshPart> part_mesh;
-  std::unique_ptr<Scene> spread_scene;  // all that the simulation was made of; none: its user has changed it since
-  std::uint64_t balanced = 0;           // how often cells have moved to other ranks
+  MotionOfPart motion_of_part;  // as the scene says; none: its user has changed it since
+  std::uint64_t balanced = 0;   // how often cells have moved to other ranks
   Environment& environment;
   Followers followers;
   MovingVertices motion;

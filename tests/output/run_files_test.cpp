@@ -22,8 +22,8 @@
 #include "dartcast/scene_file.hpp"
 #include "formats/file_text.hpp"
 #include "formats/point_file.hpp"
+#include "formats/seed_file.hpp"
 #include "output/info.hpp"
-#include "scene/seed_file.hpp"
 #include "support/data_arrays.hpp"
 #include "support/sample_mesh.hpp"
 

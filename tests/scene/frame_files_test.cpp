@@ -1,5 +1,5 @@
 // Frames from files: the fast way gives what reading each file as a mesh gives, in points and in refusals.
-#include "scene/frame_files.hpp"
+#include "formats/frame_files.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -46,10 +46,8 @@ class FrameFilesTest : public testing::Test {
     return folder / name;
   }
   static FrameReader reader(std::vector<fs::path> files, double scale = 1.0) {
-    EnvironmentScene environment;
-    environment.scale = scale;
     const MeshData mesh = read_valid_mesh(files.front()).mesh;
-    return frame_reader(std::move(files), &mesh, environment, {});
+    return frame_reader(std::move(files), &mesh, {}, scale, {});
   }
   // The frame of `second` after `first`, and the same by reading it as a mesh of its own.
   void expect_same(const fs::path& first, const fs::path& second) const {
@@ -168,11 +166,9 @@ TEST_F(FrameFilesTest, PointsAloneAreThoseOfTheMesh) {
   const MeshData mesh = test::cubes(2);
   const std::vector<Vec3> swayed = moved(mesh, sway).points;
   const fs::path first = write("a.vtp", test::vtp_text(mesh.points, {{0, 1, 2}}));
-  EnvironmentScene doubling;
-  doubling.scale = 2.0;
   const FrameReader read = frame_reader({first, write("b.vtp", test::vtp_text(swayed, {})), write("c.vtu", mesh),
                                          write("d.vtp", test::vtp_text({swayed.begin(), swayed.end() - 1}, {}))},
-                                        &mesh, doubling, {});
+                                        &mesh, {}, 2.0, {});
   const auto doubled = [](std::vector<Vec3> points) {
     for (Vec3& x : points) x *= 2.0;
     return points;

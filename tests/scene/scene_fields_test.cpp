@@ -17,8 +17,8 @@
 #include "dartcast/run.hpp"
 #include "dartcast/scene_file.hpp"
 #include "dartcast/simulation.hpp"
-#include "formats/field_series.hpp"
-#include "simulation/scene_field.hpp"
+#include "formats/file_series.hpp"
+#include "simulation/series.hpp"
 #include "support/expectations.hpp"
 
 namespace dartcast::scene_fields_test {

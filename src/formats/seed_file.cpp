@@ -1,5 +1,5 @@
 // Reads where particles start.
-#include "scene/seed_file.hpp"
+#include "formats/seed_file.hpp"
 
 #include <fmt/format.h>
 

@@ -1,24 +1,21 @@
 // Reads frames from mesh files. Only the first is checked as a whole mesh where the others have the same cells.
-#include "scene/frame_files.hpp"
+#include "formats/frame_files.hpp"
 
 #include <fmt/format.h>
 
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "dartcast/error.hpp"
-#include "dartcast/mesh_check.hpp"
-#include "formats/checked_file.hpp"
+#include "formats/file_series.hpp"
 #include "formats/file_text.hpp"
 #include "formats/format_table.hpp"
 #include "formats/openfoam.hpp"
 #include "formats/point_file.hpp"
 #include "formats/vtk.hpp"
 #include "mesh/same_cells.hpp"
-#include "scene/file_series.hpp"
 
 namespace dartcast {
 namespace {
@@ -27,15 +24,13 @@ namespace fs = std::filesystem;
 
 class FrameFiles {
  public:
-  FrameFiles(std::vector<fs::path> files, const MeshData* mesh, const EnvironmentScene& environment,
+  FrameFiles(std::vector<fs::path> files, const MeshData* mesh, const CellsOfScene& cells, double scale,
              const ReadOptions& options)
       : files_(std::move(files)),
         points_(mesh != nullptr ? std::optional(mesh->points.size()) : std::nullopt),
-        scale_(environment.scale),
+        scale_(scale),
         options_{{}, options.max_memory, options.linearise, {}},
-        skips_cells_(environment.skip_bad_cells),
-        cells_(skips_cells_ ? std::set<std::uint32_t>(mesh->source.begin(), mesh->source.end())
-                            : std::set<std::uint32_t>()) {
+        cells_(cells) {
     check_exist(files_);
     read_first();
   }
@@ -60,14 +55,9 @@ class FrameFiles {
  private:
   // The file as a mesh of its own, checked and repaired.
   [[nodiscard]] MeshData read_whole(const fs::path& file) const {
-    MeshFile read = read_mesh(file, options_);
-    if (skips_cells_ && !read.mesh.types.empty()) {
-      keep_cells(read.mesh);
-    } else {
-      read = valid_file(std::move(read));
-    }
-    check_count(file, read.mesh.points.size());
-    return std::move(read.mesh);
+    MeshData mesh = cells_.mesh_of(read_mesh(file, options_));
+    check_count(file, mesh.points.size());
+    return mesh;
   }
 
   void check_count(const fs::path& file, std::size_t points) const {
@@ -84,18 +74,6 @@ class FrameFiles {
     return points;
   }
 
-  // Keeps the cells of a frame that the scene's mesh has, by their places in the input file.
-  void keep_cells(MeshData& frame) const {
-    MeshData kept;
-    for (std::size_t c = 0; c < frame.cell_count(); ++c) {
-      const auto source = frame.source.empty() ? static_cast<std::uint32_t>(c) : frame.source[c];
-      if (cells_.count(source) > 0) kept.add_cell(frame.types[c], frame.cell(c));
-    }
-    kept.points = std::move(frame.points);
-    frame = std::move(kept);
-    check_and_repair(frame);  // drops the points of the other cells
-  }
-
   void read_first() {
     if (has_points_alone(files_.front())) {
       points_ = read_points_alone(files_.front()).size();
@@ -103,7 +81,7 @@ class FrameFiles {
     }
     MeshData first = read_whole(files_.front());
     points_ = first.points.size();
-    const std::optional<VtuPoints> plain = skips_cells_ ? std::nullopt : read_points_of(files_.front());
+    const std::optional<VtuPoints> plain = cells_.are_all() ? read_points_of(files_.front()) : std::nullopt;
     if (!plain || plain->points != first.points) return;
     first_cells_ = plain->cells;
     first_.types = std::move(first.types);
@@ -138,17 +116,16 @@ class FrameFiles {
   std::optional<std::size_t> points_;
   const double scale_;
   const ReadOptions options_;
-  const bool skips_cells_;
-  const std::set<std::uint32_t> cells_;       // of the input file that the scene's mesh has
+  const CellsOfScene cells_;
   MeshData first_;                            // cells alone
   std::optional<std::uint64_t> first_cells_;  // none: each file is read as a mesh of its own
 };
 
 }  // namespace
 
-FrameReader frame_reader(std::vector<fs::path> files, const MeshData* mesh, const EnvironmentScene& environment,
+FrameReader frame_reader(std::vector<fs::path> files, const MeshData* mesh, const CellsOfScene& cells, double scale,
                          const ReadOptions& options) {
-  const auto all = std::make_shared<const FrameFiles>(std::move(files), mesh, environment, options);
+  const auto all = std::make_shared<const FrameFiles>(std::move(files), mesh, cells, scale, options);
   return [all](std::size_t frame) { return all->read(frame); };
 }
 

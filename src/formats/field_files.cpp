@@ -1,0 +1,128 @@
+// Reads a field's files, sample by sample.
+#include "formats/field_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "dartcast/error.hpp"
+#include "formats/file_series.hpp"
+#include "formats/openfoam.hpp"
+#include "simulation/mesh_arrays.hpp"
+#include "simulation/series.hpp"
+
+namespace dartcast {
+
+namespace {
+
+// Calls make(), and puts the file's name before the message of an error unless it is there.
+template <class Make>
+auto with_file_name(const std::filesystem::path& file, Make&& make) {
+  try {
+    return make();
+  } catch (const InvalidMesh& e) {
+    if (std::string_view(e.what()).starts_with(file.string())) throw;
+    throw InvalidMesh(fmt::format("{}: {}", file.string(), e.what()));
+  }
+}
+
+// Reads a field from files of the same mesh as the scene's.
+class FieldFiles {
+ public:
+  FieldFiles(const FieldScene& field, const MeshData& mesh, const CellsOfScene& cells, const ReadOptions& options,
+             std::vector<std::filesystem::path> files)
+      : array_(field.array),
+        at_(field.at),
+        options_(options),
+        files_(std::move(files)),
+        points_(mesh.points.size()),
+        count_(mesh.cell_count()),
+        cells_(cells) {}
+
+  /// The place of the first file's array, from then on that of all.
+  FieldPlace find_place() {
+    at_ = with_file_name(files_[0], [&] { return field_place(read(0), array_, at_); });
+    return *at_;
+  }
+
+  [[nodiscard]] std::vector<Vec3> operator()(std::size_t k) const {
+    return with_file_name(files_[k], [&] {
+      std::vector<Vec3> values = read_values(k);
+      const auto bad = std::find_if_not(values.begin(), values.end(), is_finite);
+      if (bad != values.end())
+        throw InvalidMesh(fmt::format("the array '{}' is not finite at its item {}", array_, bad - values.begin()));
+      return values;
+    });
+  }
+
+  /// The mesh in file k, with its arrays.
+  [[nodiscard]] MeshData read(std::size_t k) const {
+    MeshFile file = read_mesh(files_[k], options_);
+    for (const Finding& warning : file.report.warnings) {
+      if (warning.kind == unread_field + array_) throw InvalidMesh(warning.message);
+    }
+    MeshData mesh = cells_.mesh_of(std::move(file));
+    if (mesh.points.size() != points_ || mesh.cell_count() != count_) {
+      throw InvalidMesh(
+          fmt::format("{}: {} points and {} cells; the scene's mesh has {} and {}: a field's files must "
+                      "have the same mesh",
+                      files_[k].string(), mesh.points.size(), mesh.cell_count(), points_, count_));
+    }
+    return mesh;
+  }
+
+ private:
+  [[nodiscard]] std::vector<Vec3> read_values(std::size_t k) const {
+    // A case has one mesh for all times: its values alone are enough.
+    if (at_ == FieldPlace::cells && cells_.are_all() && is_openfoam(files_[k]))
+      return openfoam_cell_vectors(files_[k], array_, count_, options_);
+    return field_values(read(k), array_, at_);
+  }
+
+  std::string array_;
+  std::optional<FieldPlace> at_;
+  ReadOptions options_;
+  std::vector<std::filesystem::path> files_;
+  std::size_t points_;
+  std::size_t count_;  // of cells
+  CellsOfScene cells_;
+};
+
+// All times are arrays of one file, and are read at once.
+void read_arrays_of_file(FieldScene& field, const MeshData& mesh, const CellsOfScene& cells,
+                         const ReadOptions& options) {
+  if (field.files.size() != 1)
+    throw InvalidArgument(
+        fmt::format("the field '{}' has a star for the arrays of one file: name just one", field.array));
+  const std::filesystem::path file = field.files.front();
+  check_exist(field.files);
+  const MeshData read = FieldFiles(field, mesh, cells, options, {file}).read(0);
+  field.samples = with_file_name(file, [&] { return field_samples_of(field, read); });
+  field.files.clear();
+}
+
+}  // namespace
+
+void read_field_files(FieldScene& field, const MeshData& mesh, const CellsOfScene& cells, const ReadOptions& options) {
+  if (field.files.empty() || field.samples.read) return;
+  if (is_pattern(field.array)) return read_arrays_of_file(field, mesh, cells, options);
+  FieldSeries series =
+      file_series({fmt::format("the field '{}'", field.array), field.array, field.files, field.times, field.spacing});
+  check_exist(series.files);
+  auto files = std::make_shared<FieldFiles>(field, mesh, cells, options, series.files);
+  field.samples.place = files->find_place();
+  field.samples.times = std::move(series.times);
+  field.samples.period = field.period;
+  field.samples.interpolation = field.interpolation;
+  field.samples.read = [files](std::size_t k) { return (*files)(k); };
+  field.files.clear();
+}
+
+}  // namespace dartcast

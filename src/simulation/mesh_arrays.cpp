@@ -1,0 +1,96 @@
+// Finds the arrays of a mesh that a scene names.
+#include "simulation/mesh_arrays.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "dartcast/error.hpp"
+#include "simulation/series.hpp"
+
+namespace dartcast {
+
+namespace {
+
+const DataArray* find_array(const std::vector<DataArray>& arrays, const std::string& name, std::size_t components) {
+  const auto found = std::find_if(arrays.begin(), arrays.end(),
+                                  [&](const DataArray& a) { return a.name == name && a.components == components; });
+  return found != arrays.end() ? &*found : nullptr;
+}
+
+std::string list_of(const std::vector<DataArray>& arrays) {
+  std::vector<std::string> known;
+  for (const DataArray& a : arrays) known.push_back(fmt::format("{} ({})", a.name, a.components));
+  return known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "));
+}
+
+[[noreturn]] void throw_missing(const MeshData& mesh, const std::string& name, std::optional<FieldPlace> at,
+                                std::size_t components) {
+  const bool points = at != FieldPlace::cells;
+  const bool cells = at != FieldPlace::points;
+  std::string message = fmt::format("the mesh has no {} array '{}' of {} components",
+                                    points && cells ? "point or cell" : (points ? "point" : "cell"), name, components);
+  if (points) message += fmt::format("; its point arrays (components) are: {}", list_of(mesh.point_data));
+  if (cells) message += fmt::format("; its cell arrays (components) are: {}", list_of(mesh.cell_data));
+  throw InvalidMesh(message);
+}
+
+// Points come first.
+std::pair<const DataArray&, FieldPlace> array_of(const MeshData& mesh, const std::string& name,
+                                                 std::optional<FieldPlace> at, std::size_t components = 3) {
+  if (at != FieldPlace::cells) {
+    if (const DataArray* found = find_array(mesh.point_data, name, components)) return {*found, FieldPlace::points};
+  }
+  if (at != FieldPlace::points) {
+    if (const DataArray* found = find_array(mesh.cell_data, name, components)) return {*found, FieldPlace::cells};
+  }
+  throw_missing(mesh, name, at, components);
+}
+
+std::vector<std::string> names_of(const MeshData& mesh, const FieldScene& scene) {
+  if (!is_pattern(scene.array)) return {scene.array};
+  std::vector<std::string> all;
+  const auto add = [&](const std::vector<DataArray>& arrays) {
+    for (const DataArray& a : arrays) {
+      if (a.components == 3 && all.end() == std::find(all.begin(), all.end(), a.name)) all.push_back(a.name);
+    }
+  };
+  if (scene.at != FieldPlace::cells) add(mesh.point_data);
+  if (scene.at != FieldPlace::points) add(mesh.cell_data);
+  std::vector<std::string> names = numbered(scene.array, all);
+  if (names.empty()) throw_missing(mesh, scene.array, scene.at, 3);
+  return names;
+}
+
+}  // namespace
+
+const std::vector<double>& point_values(const MeshData& mesh, const std::string& array, std::size_t components) {
+  return array_of(mesh, array, FieldPlace::points, components).first.values;
+}
+
+std::vector<Vec3> field_values(const MeshData& mesh, const std::string& array, std::optional<FieldPlace> at) {
+  const std::vector<double>& values = array_of(mesh, array, at).first.values;
+  std::vector<Vec3> result(values.size() / 3);
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+  return result;
+}
+
+FieldPlace field_place(const MeshData& mesh, const std::string& array, std::optional<FieldPlace> at) {
+  return array_of(mesh, array, at).second;
+}
+
+FieldSamples field_samples_of(const FieldScene& scene, const MeshData& mesh) {
+  const std::vector<std::string> names = names_of(mesh, scene);
+  const FieldPlace place = field_place(mesh, names.front(), scene.at);
+  std::vector<std::vector<Vec3>> values;
+  for (const std::string& name : names) values.push_back(field_values(mesh, name, place));
+  std::vector<double> times =
+      sample_times(fmt::format("the field '{}'", scene.array), scene.times, scene.spacing, names.size(), "arrays");
+  FieldSamples samples = field_samples(std::move(times), std::move(values), place, scene.period);
+  samples.interpolation = scene.interpolation;
+  return samples;
+}
+
+}  // namespace dartcast

@@ -1,0 +1,27 @@
+// The arrays of a mesh, by name.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dartcast/mesh_data.hpp"
+#include "dartcast/scene.hpp"
+#include "dartcast/vector_field.hpp"
+
+namespace dartcast {
+
+/// The values of a point array of so many components. Throws InvalidMesh that names the arrays there are.
+const std::vector<double>& point_values(const MeshData& mesh, const std::string& array, std::size_t components);
+
+/// An array of three components as vectors. Throws as point_values().
+std::vector<Vec3> field_values(const MeshData& mesh, const std::string& array, std::optional<FieldPlace> at);
+
+/// The place of the values that field_values() takes.
+FieldPlace field_place(const MeshData& mesh, const std::string& array, std::optional<FieldPlace> at);
+
+/// The arrays of a mesh that the scene names, as samples. Throws InvalidMesh, and as sample_times().
+FieldSamples field_samples_of(const FieldScene& scene, const MeshData& mesh);
+
+}  // namespace dartcast

@@ -1,0 +1,155 @@
+// Looks up in a mesh what a scene names: arrays, patches and regions.
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "base/are_several.hpp"
+#include "dartcast/error.hpp"
+#include "dartcast/mesh_selection.hpp"
+#include "simulation/mesh_arrays.hpp"
+#include "simulation/resolved_scene.hpp"
+#include "simulation/scene_environment.hpp"
+#include "simulation/scene_part.hpp"
+
+namespace dartcast {
+
+namespace {
+
+SimulationOptions options_of(const Scene& scene, Ranks* ranks) {
+  SimulationOptions options;
+  options.dt = scene.motion.dt;
+  options.gravity = scene.motion.gravity;
+  options.drag = scene.motion.drag;
+  options.response = scene.contact.general;
+  options.patch_responses = scene.contact.by_patch;
+  options.substeps = scene.motion.substeps;
+  options.integrator = scene.motion.integrator;
+  options.wall_motion = scene.motion.wall_motion;
+  options.seed = scene.seed;
+  options.collisions = scene.collisions;
+  options.body_collisions = scene.body_collisions;
+  options.user_data = scene.user_data;
+  options.ranks = ranks;
+  return options;
+}
+
+std::optional<VectorField> field_of(const FieldScene& scene, const std::string& name, const MeshData& mesh,
+                                    const CellComplex& complex) {
+  if (!scene.given()) return {};
+  if (!scene.samples.read && !scene.files.empty())
+    throw InvalidArgument(name + "'s files have not been read; call load_scene_files() first");
+  FieldSamples samples = scene.samples.read ? scene.samples : field_samples_of(scene, mesh);
+  samples.name = name;
+  return VectorField(complex, std::move(samples), scene.frame);
+}
+
+std::vector<DeformationStep> steps_of(const std::vector<DeformationScene>& scene, const MeshData& mesh) {
+  std::vector<DeformationStep> steps;
+  for (const DeformationScene& s : scene) {
+    if (!s.frames.empty())
+      throw InvalidArgument("the deformation's frames have not been read; call load_scene_files() first");
+    DeformationStep& step = steps.emplace_back(s.step);
+    if (!s.field.empty()) step.field = field_values(mesh, s.field, FieldPlace::points);
+    if (!s.path.empty()) step.path = point_values(mesh, s.path, 1);
+  }
+  return steps;
+}
+
+// `points`: of the rank's part in the whole; empty: the mesh is the whole.
+ResolvedMotion motion_of(const Scene& scene, const MeshData& mesh, const CellComplex& complex,
+                         std::span<const std::uint32_t> points) {
+  ResolvedMotion motion;
+  motion.field = field_of(scene.motion.field, "the velocity field", mesh, complex);
+  motion.force = field_of(scene.motion.force, "the force", mesh, complex);
+  if (scene.deformation.empty()) return motion;
+  std::vector<DeformationStep> steps = steps_of(scene.deformation, mesh);
+  if (!points.empty()) steps = steps_of_part(std::move(steps), points);
+  motion.deformation.emplace(std::move(steps), mesh.points);
+  return motion;
+}
+
+std::vector<Event> events_of(const Scene& scene, const MeshData& mesh, const CombinatorialMap& map) {
+  std::vector<Event> events;
+  for (const EventScene& e : scene.events) {
+    events.push_back(e.event);
+    if (!e.region.empty()) {
+      auto* open = std::get_if<OpenCells>(&events.back().what);
+      auto* close = std::get_if<CloseCells>(&events.back().what);
+      if (open != nullptr) open->cells = cells_of_region(mesh, e.region);
+      if (close != nullptr) close->cells = cells_of_region(mesh, e.region);
+    }
+    auto* reconnect = std::get_if<Reconnect>(&events.back().what);
+    if (reconnect != nullptr && !e.patch.empty()) reconnect->options.side = map.patch(e.patch);
+  }
+  return events;
+}
+
+void add_particles(ResolvedScene& resolved, const ParticlesScene& scene) {
+  const NewParticle particle = {scene.velocity, scene.radius, scene.user_data};
+  if (const auto* inlet = std::get_if<InletParticles>(&scene.source)) {
+    resolved.inlets.push_back({resolved.environment->map().patch(inlet->patch), inlet->rate, particle});
+  } else if (const auto* random = std::get_if<RandomParticles>(&scene.source)) {
+    resolved.particles.push_back({random->count, nullptr, particle});
+  } else {
+    const auto* seeds = std::get_if<ParticleSeeds>(&std::get<PlacedParticles>(scene.source).positions);
+    if (seeds == nullptr)
+      throw InvalidArgument("the particles' positions have not been read; call load_scene_files() first");
+    resolved.particles.push_back({0, seeds, particle});
+  }
+}
+
+// The mesh of a scene that has been loaded is taken as it is.
+bool is_ready(const EnvironmentScene& scene) {
+  return std::holds_alternative<MeshData>(scene.mesh) && scene.scale == 1.0 && !scene.skip_bad_cells &&
+         std::holds_alternative<std::monostate>(scene.free) && std::holds_alternative<std::monostate>(scene.patches);
+}
+
+void resolve_on(const MeshData& mesh, const Scene& scene, Threads threads, ResolvedScene& resolved) {
+  resolved.environment = std::make_unique<Environment>(mesh, threads);
+  const CellComplex& complex = resolved.environment->complex();
+  std::span<const std::uint32_t> points;
+  if (resolved.part) points = resolved.part->points;
+  resolved.motion = motion_of(scene, mesh, complex, points);
+  resolved.events = events_of(scene, mesh, complex.map());
+  for (const ParticlesScene& p : scene.particles) add_particles(resolved, p);
+}
+
+// Without the mesh of the scene, which is the part from now on.
+auto motion_in_parts(const Scene& scene) {
+  auto rest = std::make_shared<Scene>(scene);
+  rest->environment = {};
+  return [rest](const MeshPart& part, const CellComplex& complex) {
+    return motion_of(*rest, part.mesh, complex, part.points);
+  };
+}
+
+}  // namespace
+
+ResolvedScene resolve(const Scene& scene, Threads threads, Ranks* ranks, Partition partition) {
+  ResolvedScene resolved;
+  resolved.options = options_of(scene, ranks);
+  resolved.remesh = scene.remesh;
+  resolved.adaptive_subdivision = scene.adaptive_subdivision;
+  resolved.statistics = scene.statistics.options;
+  resolved.bodies = scene.bodies;
+  resolved.catheters = scene.catheters;
+  resolved.solids = scene.solids;
+  const bool reported = partition == Partition::particles && scene.output.report && scene.output.every > 0;
+  resolved.gathers_contacts = scene.output.contacts || reported || scene.statistics.options.any();
+  if (partition == Partition::cells && are_several(ranks)) {
+    check_can_be_spread(scene);
+    resolved.part = scene_part(scene.environment, *ranks);
+    resolved.motion_of_part = motion_in_parts(scene);
+    resolve_on(resolved.part->mesh, scene, threads, resolved);
+  } else {
+    const bool ready = is_ready(scene.environment);
+    const MeshData made = ready ? MeshData() : scene_mesh(scene.environment);
+    const MeshData& mesh = ready ? std::get<MeshData>(scene.environment.mesh) : made;
+    check_patches(scene, mesh);
+    resolve_on(mesh, scene, threads, resolved);
+  }
+  return resolved;
+}
+
+}  // namespace dartcast
