@@ -3,6 +3,7 @@
 // Each rank gets its part of the mesh in one of three ways: made, read, or sent by the first. Then all read the other files.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -109,6 +110,9 @@ bool is_made_in_parts(const EnvironmentScene& scene) {
 LoadedScene load_scene_part(Scene scene, Ranks& ranks, const ReadOptions& options, Threads threads) {
   check_can_be_spread(scene);
   const EnvironmentScene& e = scene.environment;
+  refuse(e.skip_bad_cells && std::any_of(scene.deformation.begin(), scene.deformation.end(),
+                                         [](const DeformationScene& s) { return !s.frames.empty(); }),
+         "cells to leave out, with frames,");
   const auto* path = std::get_if<std::filesystem::path>(&e.mesh);
   LoadedScene loaded;
   MeshPart part;

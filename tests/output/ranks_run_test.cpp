@@ -484,6 +484,11 @@ TEST_F(RanksRun, ByCellsSayWhatCannotBeSpread) {
     EXPECT_NE(error.find(std::string("a scene with ") + part), std::string::npos) << error;
     EXPECT_NE(error.find("leave --partition cells out"), std::string::npos) << error;
   }
+  write_mesh(generate_box({}), at("box.vtu"));
+  const std::string file = "'" + at("box.vtu").string() + "'";
+  const std::string frames = refusal("[environment]\nmesh = " + file + "\nskip_bad_cells = true\n[[deformation]]\n" +
+                                     "kind = 'frames'\nfiles = [" + file + "]\ntimes = [0]\n");
+  EXPECT_NE(frames.find("cells to leave out, with frames,"), std::string::npos) << frames;
   EXPECT_NE(refusal("[environment]\ngenerator = 'maze'\n").find("meshes of the plane"), std::string::npos);
   EXPECT_NE(refusal("[environment]\ngenerator = 'box'\ncells = [1, 1, 1]\n").find("2 parts of 1 cubes"),
             std::string::npos);
