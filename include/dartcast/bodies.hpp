@@ -25,7 +25,7 @@ namespace dartcast {
 
 // Samples of a surface: the particles of a body.
 //
-// Random candidates, one in each piece of a fine division, are taken in random order. A candidate is dropped where a
+// Random candidates, one in each piece of a fine division, are taken in random order. A candidate is dropped if a
 // sample is nearer than the spacing ("dart throwing": R. L. Cook, "Stochastic sampling in computer graphics", 1986; on
 // meshes: D. Cline, S. Jeschke, K. White, A. Razdan, P. Wonka, "Dart throwing on surfaces", 2009). Every piece has a
 // candidate, so the gaps between the samples are bounded, too.
@@ -39,22 +39,22 @@ struct SamplingOptions {
 
 /// The largest distance to the nearest sample, in spacings. `surface_cover`: from a point of the surface.
 /// `volume_cover`: from a point inside that is deeper under the surface than `cell_diagonal`. `solid_cover`: from any
-/// point inside, where samples are taken on the surface, too. Each is 1, plus the size of the pieces that hold a
+/// point inside, if samples are taken on the surface, too. Each is 1, plus the size of the pieces that hold a
 /// candidate each, plus a hundredth or less for rounding.
 inline constexpr double surface_cover = 1.26;
 inline constexpr double cell_diagonal = 0.8661;  // of candidates' cubes, of half a spacing: sqrt(3) / 2
 inline constexpr double volume_cover = 1.8661;
 inline constexpr double solid_cover = 2.1261;
 
-/// Samples on a surface, closed or open; at least one. Throws InvalidArgument where the spacing is not positive and
-/// finite, or below 2^-30 of the largest coordinate (samples would be rounding). Throws it, too, where the surface
+/// Samples on a surface, closed or open; at least one. Throws InvalidArgument if the spacing is not positive and
+/// finite, or below 2^-30 of the largest coordinate (samples would be rounding). Throws it, too, if the surface
 /// needs more than `max_count` samples (or 200 candidates for each of these); the message says which spacing to choose.
-/// Throws InvalidMesh where check_and_repair_surface() refuses the surface. Cost: 64 to 128 candidates per spacing^2 of
+/// Throws InvalidMesh if check_and_repair_surface() refuses the surface. Cost: 64 to 128 candidates per spacing^2 of
 /// area, one per triangle at least.
 std::vector<Vec3> sample_surface(const MeshData& surface, const SamplingOptions& options);
 
 /// Samples strictly inside a closed surface. A body thinner than the spacing may have none. Throws as sample_surface(),
-/// and InvalidMesh, which names an edge, where the surface is open. Cost: 8 candidates per spacing^3 of the surface's
+/// and InvalidMesh, which names an edge, if the surface is open. Cost: 8 candidates per spacing^3 of the surface's
 /// box; one exact decision of inside for each candidate that is not near a sample.
 std::vector<Vec3> sample_volume(const MeshData& surface, const SamplingOptions& options);
 
@@ -105,7 +105,7 @@ struct BodiesOptions {
 struct MatchOptions {
   /// Share of the best linear transformation in the goals, in [0, 1]; the rest is that of the best rotation.
   double linear = 0.0;
-  /// The linear transformation is scaled to keep the volume (where the body is squeezed below an eighth of it, as if it
+  /// The linear transformation is scaled to keep the volume (if the body is squeezed below an eighth of it, as if it
   /// were an eighth).
   bool keep_volume = true;
   /// Regions of the rest shape that are matched separately, for softer bodies. A particle's goal is the mean over its
@@ -138,7 +138,7 @@ struct BodyOptions {
 
 /// The answer to a request to add a body.
 struct AddBodyResult {
-  std::uint32_t body = 0xffffffffU;    ///< its id; none (0xffffffff) where it has no room
+  std::uint32_t body = 0xffffffffU;    ///< its id; none (0xffffffff) if it has no room
   std::vector<std::uint32_t> refused;  ///< points in no free cell
   SolidPlacement surface;              ///< where all points are: why its surface has no room, if it has none
 };
@@ -191,7 +191,7 @@ struct BodiesStep {
   StepReport motion;               ///< of the first pass; particles by their index during the step
   StepReport pull;                 ///< of the second pass
   BodyCollisionCounts collisions;  ///< between bodies
-  /// Energy from moving walls and from apply_impulse(), J; below 0 where the latter took more than both gave.
+  /// Energy from moving walls and from apply_impulse(), J; below 0 if the latter took more than both gave.
   double input = 0.0;
   std::uint64_t fallbacks = 0;      ///< rotations left to Eigen's SVD
   std::uint64_t repeated = 0;       ///< bodies whose first pass was repeated with limited targets
@@ -231,10 +231,10 @@ struct BodiesCheckpoint {
 ///  along the walls that it would enter.
 ///  2. Pull. The fits are computed again, and Environment::advance() moves the particles towards their goals. Positions
 ///  alone change, which takes out energy. The exact goal is the place of rest in the body: where the matching force is
-///  in balance with the centrifugal force, or with gravity where the body has met a wall. Damping and drag act on
+///  in balance with the centrifugal force, or with gravity if the body has met a wall. Damping and drag act on
 ///  velocities between the passes.
 ///  3. Edges, for bodies with a surface. Its targets are where the particles carry it. SolidSet::advance() takes it there,
-///  so that no edge and no triangle crosses a wall. Where it meets walls, the particles give way, as far as walls and
+///  so that no edge and no triangle crosses a wall. If it meets walls, the particles give way, as far as walls and
 ///  energy let them, and lose the velocity towards these walls: there is no rebound from an edge.
 /// StepOptions::max_contacts bounds the contacts of a particle in a pass.
 ///
@@ -250,7 +250,7 @@ class Bodies {
   using Checkpoint = BodiesCheckpoint;
 
   /// `environment` outlives the bodies. It may hold other sets of particles; its owner moves and edits it. Throws
-  /// InvalidArgument where an option is out of range, or the environment is of the plane.
+  /// InvalidArgument if an option is out of range, or the environment is of the plane.
   Bodies(Environment& environment, const BodiesOptions& options, WallResponses responses = WallResponses{});
   ~Bodies();
   Bodies(const Bodies& other);
@@ -258,15 +258,15 @@ class Bodies {
   Bodies& operator=(const Bodies&) = delete;
   Bodies& operator=(Bodies&&) = delete;
 
-  /// Adds a body whose rest shape is these points. Adds nothing where one of them is in no free cell, or its surface meets or
+  /// Adds a body whose rest shape is these points. Adds nothing if one of them is in no free cell, or its surface meets or
   /// encloses a wall.
-  /// Throws InvalidArgument where an option is out of range; the message about a stiffness above 1 / dt^2 gives the
-  /// largest dt. Throws it where there is no point, or a mass is not is_mass(). And where a cluster is empty, names a
-  /// missing point or one twice, or leaves a point in none. Throws as Environment::add(); with a surface also as SolidSet::add(), and InvalidArgument where fewer
+  /// Throws InvalidArgument if an option is out of range; the message about a stiffness above 1 / dt^2 gives the
+  /// largest dt. Throws it if there is no point, or a mass is not is_mass(). And if a cluster is empty, names a
+  /// missing point or one twice, or leaves a point in none. Throws as Environment::add(); with a surface also as SolidSet::add(), and InvalidArgument if fewer
   /// than four points or points in a plane carry it.
   AddBodyResult add(std::span<const Vec3> points, const BodyOptions& options);
 
-  /// One step; once after each move. Throws as Environment::advance(), and InvalidArgument where a body has a surface and
+  /// One step; once after each move. Throws as Environment::advance(), and InvalidArgument if a body has a surface and
   /// missed a move. Cost: about 0.5 us per particle; for a surface 0.6 us per vertex, mean of a body that rests.
   const BodiesStep& step();
 
@@ -274,19 +274,19 @@ class Bodies {
   /// along. Surfaces that walls would run into give way. If they cannot, walls and surfaces stop at the same share of
   /// their ways, which is returned. Other particles must then be advanced, as after Environment::move(). Without any
   /// surface it is Environment::move(), and the owner may call that in its place. Throws as Environment::move(), and
-  /// InvalidArgument where the bodies missed a move or an edit, or no step() came after the last move; nothing is
+  /// InvalidArgument if the bodies missed a move or an edit, or no step() came after the last move; nothing is
   /// changed then.
   double move_with(std::span<const Vec3> positions);
 
   /// A body as a rigid one, with its velocity at the end of the next step if it has no contacts. Its inverse mass is
-  /// 0 where a wall holds one of its particles. Cost: about 20 ns per particle.
+  /// 0 if a wall holds one of its particles. Cost: about 20 ns per particle.
   [[nodiscard]] RigidMover predicted_state(std::size_t body) const;
   /// Gives a body an impulse. `solved`: the predicted_state() after contacts with others than bodies changed it. In the
   /// next step forces make that change of momentum, and the body moves by the displacement in `solved`.
   /// BodiesStep::input counts the energy.
   void apply_impulse(std::size_t body, const RigidMover& solved);
 
-  /// To be called after each edit of the environment. A body leaves where the edit absorbs one of its particles. One with a
+  /// To be called after each edit of the environment. A body leaves if the edit absorbs one of its particles. One with a
   /// wall of the edit in its surface is stuck: it stays until a later edit frees it. Throws
   /// as Environment::update_after_edit(), and as SolidSet::update_after_edit().
   UpdateReport update_after_edit(OrphanPolicy orphaned = OrphanPolicy::relocate);
@@ -328,8 +328,8 @@ class Bodies {
 
   /// The state now, for restore(). Cost: linear in the particles.
   [[nodiscard]] BodiesCheckpoint checkpoint() const;
-  /// Goes on from a checkpoint, where the same bodies have been added to an environment in the same state as then.
-  /// Every later step is the same to the last bit. Throws InvalidArgument, nothing changed, where bodies or sizes do
+  /// Goes on from a checkpoint, if the same bodies have been added to an environment in the same state as then.
+  /// Every later step is the same to the last bit. Throws InvalidArgument, nothing changed, if bodies or sizes do
   /// not match, or as Environment::restored().
   void restore(const BodiesCheckpoint& saved);
 

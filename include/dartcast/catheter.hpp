@@ -37,7 +37,7 @@ struct CatheterOptions {
   /// Largest relative error of a segment's length that a push may leave; below 0.01.
   double tolerance = 0.008;
   /// Whether the segments between the points meet walls, too. They keep 2^-10 of the spacing from walls, or of the wall's
-  /// longest side where that is shorter.
+  /// longest side if that is shorter.
   bool edges = true;
 };
 
@@ -50,7 +50,7 @@ struct CatheterInput {
 
 /// Report of one step.
 struct CatheterStep {
-  double pushed = 0.0;         ///< m: the real push; less than the input where there was no way on
+  double pushed = 0.0;         ///< m: the real push; less than the input if there was no way on
   double turned = 0.0;         ///< rad
   double worst_segment = 0.0;  ///< largest relative error of the length of a segment in the lumen
   std::uint32_t substeps = 0;
@@ -98,7 +98,7 @@ struct CatheterCheckpoint {
 /// free: so with edges no segment meets a wall at any time. (Without edges, points walk in each round, and slide at walls.) A
 /// substep that leaves a segment off by more than the tolerance, or has no free way, is undone. It is tried again with half
 /// the length, four times; then the rest of the push is refused. The first spacing beyond the entry is straight; a push is
-/// refused, too, where it has no room. Where the vessel's motion leaves
+/// refused, too, if it has no room. If the vessel's motion leaves
 /// no such solution, lengths come before bends. Twist reaches the tip at once: the chain is infinitely stiff against
 /// it. Results are the same bits for any number of threads.
 class Catheter {
@@ -111,23 +111,23 @@ class Catheter {
   Catheter(const Catheter&) = delete;
   Catheter& operator=(const Catheter&) = delete;
 
-  /// Any number of times. Throws InvalidArgument, nothing changed, where an input is not finite or too large, or the
-  /// catheter missed a move or an edit. Where the vessel itself leaves no room, a segment may be off without any push: see
+  /// Any number of times. Throws InvalidArgument, nothing changed, if an input is not finite or too large, or the
+  /// catheter missed a move or an edit. If the vessel itself leaves no room, a segment may be off without any push: see
   /// `worst_segment`. Cost: some 2 us per point and round.
   CatheterStep step(const CatheterInput& input);
 
   /// Moves the environment straight to these positions of all the mesh's points. The vessel carries all points along, and
-  /// segments bend away from walls. Where these would run into a segment even so, the environment and the catheter stop at the
+  /// segments bend away from walls. If these would run into a segment even so, the environment and the catheter stop at the
   /// same share of their ways, which is returned. Other particles must then be advanced, as after Environment::move().
   /// Without edges it is Environment::move(), and the owner may call that in its place. Throws as Environment::move(), and
-  /// InvalidArgument where the catheter missed a move or an edit; nothing is changed then. Cost: some 6 us per segment.
+  /// InvalidArgument if the catheter missed a move or an edit; nothing is changed then. Cost: some 6 us per segment.
   double move_with(std::span<const Vec3> positions);
 
   /// To be called after each edit of the environment, as Environment::update_after_edit(). Points without a place move
-  /// to the nearest free one. Where there is none they are held in their blocked cells until these are free again. With
-  /// edges the catheter is stuck where a wall that the edit made is in a segment: it stays until a later edit frees it, and
+  /// to the nearest free one. If there is none they are held in their blocked cells until these are free again. With
+  /// edges the catheter is stuck if a wall that the edit made is in a segment: it stays until a later edit frees it, and
   /// the cells around its points carry it along.
-  /// Throws InvalidArgument, nothing changed, where a point's cell was removed and no free cell exists; the catheter
+  /// Throws InvalidArgument, nothing changed, if a point's cell was removed and no free cell exists; the catheter
   /// cannot be used after that.
   UpdateReport update_after_edit();
 
@@ -149,7 +149,7 @@ class Catheter {
   [[nodiscard]] Vec3 entry() const;
   [[nodiscard]] Vec3 direction() const;
 
-  /// Whether any segment meets a wall, in integers, by code that shares nothing with the steps. Without edges, or where the
+  /// Whether any segment meets a wall, in integers, by code that shares nothing with the steps. Without edges, or if the
   /// catheter is stuck, nothing is checked. Cost: as SolidSet::audit().
   [[nodiscard]] SolidAudit audit() const;
   /// All points with the waiting ones, then the entry: for audits.
@@ -159,7 +159,7 @@ class Catheter {
 
   [[nodiscard]] CatheterCheckpoint checkpoint() const;
   /// Goes on from a checkpoint of a catheter with the same options, in an equal environment after the same move. Every
-  /// later step is the same to the last bit. Throws InvalidArgument, nothing changed, where the checkpoint does not
+  /// later step is the same to the last bit. Throws InvalidArgument, nothing changed, if the checkpoint does not
   /// fit.
   void restore(const CatheterCheckpoint& saved);
 

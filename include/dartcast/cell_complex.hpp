@@ -38,7 +38,7 @@ class SteinerWeights {
   /// Removes a vertex; nothing happens if it is not a Steiner point. The first call lists the vertices, once. After
   /// that the cost is constant on average.
   void remove(Vertex v);
-  /// The corners of a Steiner point, and their weights. Empty where the vertex is none. The first call lists the
+  /// The corners of a Steiner point, and their weights. Empty if the vertex is none. The first call lists the
   /// vertices, once. After that the cost is constant on average. The spans are valid until a vertex is added.
   [[nodiscard]] std::pair<std::span<const std::uint32_t>, std::span<const double>> of(Vertex v);
   /// Writes the positions of the vertices, in a fixed order of operations. `positions`: of all vertices.
@@ -73,7 +73,7 @@ inline Corners raised(const Corners& v) {
 /// A combinatorial map with the positions of its vertices, now and at the start of the current move.
 class CellComplex {
  public:
-  /// Builds the map, finds Steiner points where cells need them, and checks every simplex. Cells that no Steiner point
+  /// Builds the map, finds Steiner points if cells need them, and checks every simplex. Cells that no Steiner point
   /// makes positive are listed in invalid_cells(). The complex can still be used; particles in these cells are held.
   /// Preconditions and errors as for CombinatorialMap. Cost: linear.
   explicit CellComplex(const MeshData& mesh, Threads threads = {});

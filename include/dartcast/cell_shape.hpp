@@ -106,7 +106,7 @@ struct ShapeKey {
     auto operator<=>(const Face&) const = default;
   };
   std::uint16_t corner_count = 0;
-  std::uint16_t apex = 0;  ///< local number of the lowest-numbered corner, where the cell has no Steiner point
+  std::uint16_t apex = 0;  ///< local number of the lowest-numbered corner, if the cell has no Steiner point
   bool has_point = false;  ///< coned from a Steiner point
   std::vector<Face> faces;
   auto operator<=>(const ShapeKey&) const = default;
@@ -139,8 +139,8 @@ class Shape {
   static constexpr std::size_t max_darts = 0x3fff;
   static_assert(max_darts < Across::outer_bit);
 
-  /// Throws InvalidArgument where the apex is no corner, a corner is in no face, or an edge of a polygon has a Steiner
-  /// point. Throws InvalidMesh where there are more than max_darts, or where the faces do not close: an edge is not used
+  /// Throws InvalidArgument if the apex is no corner, a corner is in no face, or an edge of a polygon has a Steiner
+  /// point. Throws InvalidMesh if there are more than max_darts, or if the faces do not close: an edge is not used
   /// once in each direction, or in the plane the edges are not one cycle in the given order. Faces that meet in an edge with a corner on it may have fans with a
   /// common triangle. Then the fans bound no solid. The shape has one simplex that is flat at any positions, so that
   /// the cell is invalid until such faces get Steiner points.
@@ -181,7 +181,7 @@ class Shape {
   [[nodiscard]] std::span<const std::uint16_t> corners(std::uint16_t face) const { return key_.faces[face].corners; }
 
   [[nodiscard]] const std::vector<ImplicitSimplex>& simplices() const { return simplices_; }
-  /// Empty where the shape is flat, or a polygon. The first call makes them, because most shapes that an edit makes are
+  /// Empty if the shape is flat, or a polygon. The first call makes them, because most shapes that an edit makes are
   /// released before a walk asks. Any number of threads may call.
   [[nodiscard]] const Stars& stars() const {
     const Stars* made = stars_.load(std::memory_order_acquire);
@@ -192,7 +192,7 @@ class Shape {
     const detail::ExitTable* made = exits_.load(std::memory_order_acquire);
     return made != nullptr ? *made : make_exits();
   }
-  /// Number of triangles in a face's fan: degree - 2, or degree where the face has a Steiner point. In the plane a face
+  /// Number of triangles in a face's fan: degree - 2, or degree if the face has a Steiner point. In the plane a face
   /// is one facet of a simplex, as a triangle is.
   [[nodiscard]] std::uint16_t triangle_count(std::uint16_t face) const {
     if (dimension_ == 2) return 1;

@@ -18,7 +18,7 @@
 // then                                             per face: number of the neighbour's face 16, wall 16
 //
 //  - version: how often another cell took this place. A stale handle has another version.
-//  - wide: the number of a neighbour's face does not fit in 3 bits. Where the bits are 7, the neighbour is searched.
+//  - wide: the number of a neighbour's face does not fit in 3 bits. If the bits are 7, the neighbour is searched.
 //  - patch: a face of the cell is in a patch. The patches are in a side table.
 //  - flat: darts of the cell have marks. The marks are in a side table.
 //  - vacant: the cell was removed (dartcast/map_edits.hpp), and its place waits for another.
@@ -137,7 +137,7 @@ class CombinatorialMap {
   }
   /// The same edge of the same face from the other side; invalid on the boundary, and in the plane.
   [[nodiscard]] Dart phi3(Dart d) const { return dimension_ == 2 ? Dart{} : across(d); }
-  /// The next dart around the vertex of d: phi1(phi2(d)). Invalid where phi2(d) is.
+  /// The next dart around the vertex of d: phi1(phi2(d)). Invalid if phi2(d) is.
   [[nodiscard]] Dart alpha1(Dart d) const {
     const Dart other = phi2(d);
     return other.valid() ? phi1(other) : other;
@@ -149,7 +149,7 @@ class CombinatorialMap {
   [[nodiscard]] CellFace face(Dart d) const { return {d.cell, shape(d.cell).face_of(d.number)}; }
   /// The same face from the other side; invalid on the boundary.
   [[nodiscard]] CellFace opposite(CellFace f) const;
-  /// The Steiner point that a face is fanned from; invalid where the face has none.
+  /// The Steiner point that a face is fanned from; invalid if the face has none.
   [[nodiscard]] Vertex point(CellFace f) const;
 
   // Cells.

@@ -39,7 +39,7 @@ struct ComplexEditReport {
   /// Unchanged cells next to touched cells.
   std::vector<Cell> around;
   /// Bound on the motion of walls and of the boundary where an edit split, merged or fanned faces anew (m). No point of
-  /// them lies farther than this from its old position. It is rounding where the faces are planar, or
+  /// them lies farther than this from its old position. It is rounding if the faces are planar, or
   /// split along their fans; else their warp.
   /// Faces that became walls do not count.
   double boundary_shift = 0.0;
@@ -89,7 +89,7 @@ class ComplexEdit {
   void place(Vertex v, const Vec3& x);
   /// Places it at the weighted mean of older vertices. Data at the vertices follow by the same weights, which is better
   /// for a vertex in the middle of a face or a cell. `weights`: one per vertex of `of`; they sum to 1. Throws as above,
-  /// and where the numbers do not match.
+  /// and if the numbers do not match.
   void place(Vertex v, std::span<const Vertex> of, std::span<const double> weights);
 
   [[nodiscard]] Transaction::Savepoint savepoint() const { return transaction_.savepoint(); }
@@ -98,12 +98,12 @@ class ComplexEdit {
 
   /// The cells that commit() would refuse as they are now: of the given ones, and of their neighbours at faces that
   /// would get Steiner points. Sorted. `cells`: some that this edit made. `keep_faces`: also cells with a bent face that
-  /// would get a Steiner point, which moves it. Throws InvalidArgument where there is no such cell. Cost: linear in the
+  /// would get a Steiner point, which moves it. Throws InvalidArgument if there is no such cell. Cost: linear in the
   /// cells.
   [[nodiscard]] std::vector<Cell> refused_cells(std::span<const Cell> cells, bool keep_faces = false);
 
   /// Gives touched cells the Steiner points that they need (see ComplexEditReport::now()), and makes everything final.
-  /// Throws EditRefused, which names the cell, where a new cell has a simplex that is not positive and no Steiner point
+  /// Throws EditRefused, which names the cell, if a new cell has a simplex that is not positive and no Steiner point
   /// repairs it. Then everything is undone. Cost: that of the cells touched and their neighbours.
   ComplexEditReport commit();
 

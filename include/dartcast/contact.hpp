@@ -39,7 +39,7 @@ struct Contact {
   bool last = false;            ///< no further contact is allowed in this step
   double time_of_impact = 0.0;  ///< fraction of the step, in [0, 1]; that of a particle's contacts never falls
   /// On the wall, rounded. The particle is put into the free closed cell there. It is at most 256 units in the last
-  /// place of the point's largest coordinate away, or 256 times 2^-300 if that is more. Where that is impossible, it
+  /// place of the point's largest coordinate away, or 256 times 2^-300 if that is more. If that is impossible, it
   /// is no farther away than the start of its motion to the wall.
   Vec3 point;
   Vec3 wall_displacement;  ///< motion of the wall at that point over the whole step; zero in a scene at rest

@@ -13,7 +13,7 @@ namespace dartcast {
 
 // Cells split along a plane.
 
-/// A plane. A point x is below it where dot(normal, x) < offset, else above or on it.
+/// A plane. A point x is below it if dot(normal, x) < offset, else above or on it.
 struct Plane {
   Vec3 normal = {0.0, 0.0, 1.0};  ///< a unit vector
   double offset = 0.0;            ///< m
@@ -22,14 +22,14 @@ struct Plane {
   [[nodiscard]] Plane turned() const { return {-normal, -offset}; }
 };
 
-/// The plane through a point. The normal may have any length. Throws InvalidArgument where a number is not finite or
+/// The plane through a point. The normal may have any length. Throws InvalidArgument if a number is not finite or
 /// the normal is zero.
 Plane plane_through(const Vec3& point, const Vec3& normal);
 
 /// How a plane splits cells.
 struct SectionOptions {
   /// Vertices nearer to the plane than this share of the mean edge of the cells to be split (or of `finest`, if that is
-  /// less) count as on the plane. So no part becomes much thinner than that. Where the plane runs along faces nothing
+  /// less) count as on the plane. So no part becomes much thinner than that. If the plane runs along faces nothing
   /// is split. The section bends by no more than that. All vertices share one distance: then no flat face can change
   /// sides more than twice.
   double snap = 1.0 / 32.0;
@@ -58,7 +58,7 @@ struct Section {
 /// divide_into_simplices()), whether it is named or beside one that is. If vertices that snap to the plane still bend
 /// thin parts inside out, the cut is made with `min_snap`. Other cuts stay as they are.
 ///
-/// Throws InvalidArgument where there is no such cell, where a cell is named twice, or where snap is not in [2^-30,
+/// Throws InvalidArgument if there is no such cell, if a cell is named twice, or if snap is not in [2^-30,
 /// 1/4]. Throws as the edits of dartcast/map_edits.hpp. Then everything is unchanged. commit() checks whether the parts
 /// are valid. Cost: linear in the cells named and those around them.
 Section split_by_plane(ComplexEdit& edit, std::span<const Cell> cells, const Plane& plane,
@@ -85,21 +85,21 @@ struct BladePath {
   std::vector<std::array<Vec3, 2>> places;
 };
 
-// Tools that hold the points at most width / 2 from a surface, up to corners. All throw InvalidArgument where a number
+// Tools that hold the points at most width / 2 from a surface, up to corners. All throw InvalidArgument if a number
 // is not finite, or a width or radius is not positive, and as they say.
 
 /// The layer between two planes, width / 2 to both sides.
 std::vector<ConvexTool> thicken(const Plane& plane, double width);
-/// Throws also where the number of sides is not 3 to 1000.
+/// Throws also if the number of sides is not 3 to 1000.
 std::vector<ConvexTool> thicken(const Disc& disc, double width);
-/// One tool for the region between two places of the blade, or two tools where that region is not flat. The tools
+/// One tool for the region between two places of the blade, or two tools if that region is not flat. The tools
 /// join along planes that halve the angles between them. It also throws if there are fewer than two places, or the
 /// blade has no length, does not move, or turns back onto itself.
 std::vector<ConvexTool> thicken(const BladePath& path, double width);
 
-/// An upright box. Throws InvalidArgument where it is empty or not finite.
+/// An upright box. Throws InvalidArgument if it is empty or not finite.
 ConvexTool box_tool(const Vec3& low, const Vec3& high);
-/// A rod with round ends, or a ball (where a is b), as 26 planes that touch it. The tool holds all of the capsule, and
+/// A rod with round ends, or a ball (if a is b), as 26 planes that touch it. The tool holds all of the capsule, and
 /// reaches at most 1.13 radii from the line between a and b. Throws as above.
 ConvexTool capsule_tool(const Vec3& a, const Vec3& b, double radius);
 
@@ -107,7 +107,7 @@ ConvexTool capsule_tool(const Vec3& a, const Vec3& b, double radius);
 /// perhaps some near the tools' edges. In the order of CombinatorialMap::cells(). Cost: one pass over the scene.
 std::vector<Cell> cells_near(const CellComplex& complex, std::span<const ConvexTool> tools);
 /// The same, but only cells that are connected to `start` through such cells. Empty if `start` is not one of them.
-/// Throws InvalidArgument where there is no such cell. Cost: that of the cells returned and their neighbours.
+/// Throws InvalidArgument if there is no such cell. Cost: that of the cells returned and their neighbours.
 std::vector<Cell> cells_near(const CellComplex& complex, std::span<const ConvexTool> tools, Cell start);
 
 // Cutting and carving: cells in a tool become free, or are removed.
@@ -137,7 +137,7 @@ struct Carved {
 /// split, such as cells_near() finds; other cells stay whole. Bent cells are divided first as in split_by_plane(). The
 /// scene stays watertight where tissue becomes free: no face is opened.
 ///
-/// Throws InvalidArgument where a cell does not exist or is named twice, or snap is not in [2^-30, 1/4]. Throws as
+/// Throws InvalidArgument if a cell does not exist or is named twice, or snap is not in [2^-30, 1/4]. Throws as
 /// split_by_plane(). Then everything is unchanged. Cost: that of the cells named and those around them.
 Carved carve(ComplexEdit& edit, std::span<const Cell> cells, std::span<const ConvexTool> tools, Carving what,
              const CarveOptions& options = {});
@@ -161,11 +161,11 @@ std::vector<CellFace> open_faces(ComplexEdit& edit, std::span<const Cell> cells,
 /// the section always seals: no free cell below the plane is a neighbour of one above there. Returns the blocked cells.
 /// To untie the vessel, free them.
 ///
-/// Throws InvalidArgument where `start` does not exist, is blocked, or is not crossed. Cost: that of the cells blocked
+/// Throws InvalidArgument if `start` does not exist, is blocked, or is not crossed. Cost: that of the cells blocked
 /// and their neighbours.
 std::vector<Cell> ligature(ComplexEdit& edit, const Plane& plane, Cell start);
 /// The same, with `start` the crossed free cell whose mean of corners is nearest to `place`. Throws InvalidArgument
-/// where the plane crosses no free cell. Cost: one pass over the scene besides.
+/// if the plane crosses no free cell. Cost: one pass over the scene besides.
 std::vector<Cell> ligature(ComplexEdit& edit, const Plane& plane, const Vec3& place);
 
 /// How a ligature draws the walls together.
@@ -177,7 +177,7 @@ struct TyingOptions {
 /// The motion of vertices when a ligature draws the walls of the vessel together. They move towards the middle of the
 /// section, parallel to the plane: those of the section by `share` of the distance, others less, fading out smoothly.
 /// For Environment::move_until_inverted(). `section`: cells of the complex, such as ligature() returned. `positions`:
-/// some or all of the complex's, changed in place. Throws InvalidArgument where a cell does not exist, none is named,
+/// some or all of the complex's, changed in place. Throws InvalidArgument if a cell does not exist, none is named,
 /// or an option is out of range. Cost: linear in the positions.
 void draw_together(const CellComplex& complex, std::span<const Cell> section, const Plane& plane,
                    const TyingOptions& options, std::span<Vec3> positions);

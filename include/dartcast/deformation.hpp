@@ -28,13 +28,13 @@ enum class DeformationKind : std::uint8_t {
            ///< amplitude.
   swing,   ///< to and fro about that axis: by the angle A w(t)
   bend,    ///< the axis becomes a circle's arc towards d, of curvature k = A w(t) / length. A point at height s on the
-  ///< axis goes to centre + a sin(ks) / k + d (1 - cos(ks)) / k, and its cross-section turns with it. Valid where
+  ///< axis goes to centre + a sin(ks) / k + d (1 - cos(ks)) / k, and its cross-section turns with it. Valid if
   ///< k h < 1.
   twist,    ///< cross-sections turn about the axis by A w(t) s / length
   stretch,  ///< along the axis by f = 1 + A w(t), across it by 1 / sqrt(f): volumes stay. |A| < 1.
   pulse,    ///< x + A sin(2 pi (t / period - p / wavelength)) e, a wave that travels with p. e is the vertex's `field`;
-            ///< without one r - a s (away from the axis), or r (away from the centre) where the axis is 0. p is the
-            ///< vertex's `path`; without one s. No wave travels where wavelength is 0; where
+            ///< without one r - a s (away from the axis), or r (away from the centre) if the axis is 0. p is the
+            ///< vertex's `path`; without one s. No wave travels if wavelength is 0; if
             ///< one does, points are off their rest at t = 0 too.
   bump,     ///< x + a A w(t) (1 - |r|^2 / length^2)^2 within `length` of the centre: a smooth bulge along the axis
   frames,   ///< positions given at `times`, interpolated between them, the first before and the last after them, or
@@ -50,12 +50,12 @@ inline constexpr std::array deformation_kinds = {
 std::optional<DeformationKind> deformation_kind(std::string_view name);
 
 /// Reads a frame: the position of every vertex at times[frame]. It may be called by another thread than the caller's,
-/// and by several at once where several deformations are made with it. Its exceptions reach the caller who needs the
+/// and by several at once if several deformations are made with it. Its exceptions reach the caller who needs the
 /// frame.
 using FrameReader = std::function<std::vector<Vec3>(std::size_t frame)>;
 
 /// Bytes of frames that a deformation holds at most, the two (cubic: four) that it needs and those read ahead; three
-/// (five) where these are more. One more is being read.
+/// (five) if these are more. One more is being read.
 inline constexpr std::size_t frame_memory = std::size_t{32} << 20U;
 /// And their number.
 inline constexpr std::size_t max_frames_held = 64;
@@ -101,7 +101,7 @@ class Deformation {
   /// For a mesh of the plane. Throws InvalidArgument, naming the step and the member, unless every point with z = 0
   /// keeps z = 0 exactly at all times. Every centre is in the plane. Rotate, swing and twist are about [0, 0, 1]. Bend
   /// and bump have vectors of the plane. Stretch and pulse have an axis in the plane or across it. Fields and frames
-  /// have z = 0. Cost: linear where there are fields, frames or pulls. Frames with a reader are checked, too, from now on
+  /// have z = 0. Cost: linear if there are fields, frames or pulls. Frames with a reader are checked, too, from now on
   /// when they are needed.
   void check_plane();
 
@@ -109,7 +109,7 @@ class Deformation {
   /// the environment's positions now.
   void update_after_edit(const ComplexEditReport& edit, std::size_t size);
   /// Adds a displacement of some vertices that grows from 0 at the time `begin` to all of it at `end` (s), smoothly,
-  /// and stays; on top of everything else. `displacement`: one per vertex so far. Throws InvalidArgument where the
+  /// and stays; on top of everything else. `displacement`: one per vertex so far. Throws InvalidArgument if the
   /// number does not match, one is not finite, or the end is not after the beginning.
   void add_pull(std::span<const Vec3> displacement, double begin, double end);
 
@@ -118,8 +118,8 @@ class Deformation {
   void load_frames(double time) const;
 
   /// Writes the position of every vertex at `time` (s). The same bits for any number of threads. Throws
-  /// InvalidArgument, and writes nothing, where time is not finite or out has not one place per vertex. Where a frame
-  /// must be read: the reader's exception, or InvalidMesh that names the frame, where it has not one finite position
+  /// InvalidArgument, and writes nothing, if time is not finite or out has not one place per vertex. If a frame
+  /// must be read: the reader's exception, or InvalidMesh that names the frame, if it has not one finite position
   /// per vertex or, after check_plane(), leaves the plane. A frame that could not be read is read again by the next
   /// call. Cost: 10 to 60 ns per vertex and step.
   void positions(double time, std::span<Vec3> out, Threads threads = {}) const;

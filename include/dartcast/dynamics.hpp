@@ -23,7 +23,7 @@ inline bool is_mass(double m) { return m >= smallest_mass && m <= largest_mass; 
 /// The time of impact of a sphere is never after the first touch, and before it by at most this share of the motion.
 inline constexpr double sphere_time_bound = 0x1p-30;
 
-/// A sphere touches a wall where its radius and its distance from the wall differ by no more than this share of
+/// A sphere touches a wall if its radius and its distance from the wall differ by no more than this share of
 /// (radius + the largest coordinate of the centre): the rounding of a centre at that distance. Two points that are no
 /// farther apart count as one.
 inline constexpr double touching_bound = 0x1p-46;
@@ -61,7 +61,7 @@ struct Mat3 {
   constexpr bool operator==(const Mat3&) const = default;
 };
 
-/// w + v; a rotation where its length is 1.
+/// w + v; a rotation if its length is 1.
 struct Quaternion {
   double w = 1.0;
   Vec3 v;

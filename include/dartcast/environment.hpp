@@ -53,11 +53,11 @@ class Particles {
   /// step to step, so that values at vertices are interpolated without a look at the cell.
   [[nodiscard]] std::span<const std::array<std::uint32_t, 4>> vertex_numbers() const;
 
-  // These throw InvalidArgument and change nothing where a size does not match or an index names no particle.
+  // These throw InvalidArgument and change nothing if a size does not match or an index names no particle.
 
   /// Removes the particles marked with 1; the others keep their order. `marks`: one per particle.
   void remove(std::span<const std::uint8_t> marks);
-  /// Keeps the first `count` particles alone; it does nothing where there are no more. Without memory of its own, so that
+  /// Keeps the first `count` particles alone; it does nothing if there are no more. Without memory of its own, so that
   /// it can undo an addition.
   void truncate(std::size_t count);
   /// Reorders: particle i is then the former particle order[i]. `order`: a permutation.
@@ -65,7 +65,7 @@ class Particles {
   /// A set of these particles alone, in this order, as they are. `which`: indices.
   [[nodiscard]] Particles selected(std::span<const std::uint32_t> which) const;
   /// Puts particles that were selected() back in their places, as they are now. `which`: as it was then. It also throws
-  /// where the sets are of different environments, or have not followed the same moves and edits.
+  /// if the sets are of different environments, or have not followed the same moves and edits.
   void replace(std::span<const std::uint32_t> which, const Particles& by);
 
  private:
@@ -110,7 +110,7 @@ struct RayCells {
 /// How update_after_edit() treats an orphaned particle: one that is in a blocked cell, or outside, after an edit.
 enum class OrphanPolicy : std::uint8_t {
   hold,      ///< held in the blocked cell, and carried along with it, until it is free again; outside: as relocate
-  relocate,  ///< to the nearest point of the free cells; absorbed where there is none
+  relocate,  ///< to the nearest point of the free cells; absorbed if there is none
   absorb     ///< removed from the set
 };
 
@@ -134,7 +134,7 @@ struct UpdateReport {
 /// bodies and catheters keep a reference to it.
 ///
 /// Two rules hold for every set of particles that is not empty:
-/// - Before the next move() it takes part in the last one, by advance(). Where an edit was made after that move, it does
+/// - Before the next move() it takes part in the last one, by advance(). If an edit was made after that move, it does
 ///   so by update_after_edit().
 /// - Before the next edit() it follows the last one, by update_after_edit().
 ///
@@ -142,7 +142,7 @@ struct UpdateReport {
 /// missed a move or an edit; its positions can be added to a new set.
 class Environment {
  public:
-  /// Builds the complex. Throws InvalidMesh where check_and_repair() finds a defect, or where a cell has a simplex that
+  /// Builds the complex. Throws InvalidMesh if check_and_repair() finds a defect, or if a cell has a simplex that
   /// is not positive; the message names the first one. The repairs are not visible to the caller: call
   /// check_and_repair() first to see and keep them. Throws as set_threads().
   explicit Environment(MeshData mesh, Threads threads = {});
@@ -156,7 +156,7 @@ class Environment {
   /// Those of the mesh's points.
   [[nodiscard]] std::span<const Vec3> positions() const;
 
-  /// Where a point is. Throws InvalidArgument where it is not finite or outside the exact range. Precondition: no other
+  /// Where a point is. Throws InvalidArgument if it is not finite or outside the exact range. Precondition: no other
   /// thread calls it at the same time. Cost: the first call after a move makes a grid over all cells.
   [[nodiscard]] Location locate(const Vec3& x);
   /// Locates many points, in parallel. Throws as locate(), naming the point.
@@ -164,7 +164,7 @@ class Environment {
 
   /// The first wall that each ray meets within `max_distance` of its origin; infinite: within the scene. Rays see walls
   /// from their free side. Directions have any length. Every decision is exact for the segment whose end has been
-  /// rounded: no ray passes between two faces or through an edge. `passed`: where not null, the cells on the way.
+  /// rounded: no ray passes between two faces or through an edge. `passed`: if not null, the cells on the way.
   /// Throws InvalidArgument, naming the ray, if locate() refuses its origin. It also throws if its direction is zero or
   /// not finite, or in the plane has a z that is not 0. So do an end out of the exact range, a distance that is
   /// negative or not a number, and numbers that differ. Precondition: as for locate(). Cost: locate() and a step for
@@ -174,17 +174,17 @@ class Environment {
                                               RayCells* passed = nullptr);
 
   /// Adds a particle for every position in a free cell, in their order. Returns one result per position: those in a
-  /// blocked cell or outside are not added. Throws as locate(), and InvalidArgument where the particles are of another
+  /// blocked cell or outside are not added. Throws as locate(), and InvalidArgument if the particles are of another
   /// environment or have missed a move or an edit; nothing is added then.
   std::vector<AddResult> add(Particles& particles, std::span<const Vec3> positions);
-  /// Adds a particle without a search, where the caller knows the simplex. Returns false and adds nothing unless the
+  /// Adds a particle without a search, if the caller knows the simplex. Returns false and adds nothing unless the
   /// position lies exactly in that closed simplex, and the simplex is positive and of a free cell. Throws
-  /// InvalidArgument where the particles are of another environment or have missed a move or an edit. Cost: five exact
+  /// InvalidArgument if the particles are of another environment or have missed a move or an edit. Cost: five exact
   /// signs.
   bool add(Particles& particles, SimplexId simplex, const Vec3& position);
 
   /// Particles with these states, which were saved from an equal environment. They have taken part in the last move and
-  /// edit. `weights`: one per state, read where it is held. Throws InvalidArgument, naming the first state that is not
+  /// edit. `weights`: one per state, read if it is held. Throws InvalidArgument, naming the first state that is not
   /// one of this environment: it breaks guarantee G3, or touches a face that is no wall.
   [[nodiscard]] Particles restored(std::span<const ParticleState> states, std::span<const Weights> weights) const;
 
@@ -196,16 +196,16 @@ class Environment {
   /// update_after_edit() an edit made after this move, before the next move. advance() takes targets relative to
   /// positions before the move.
   void move();
-  /// Copies new positions of all the mesh's points, then move(). Throws InvalidArgument, nothing moved, where the
+  /// Copies new positions of all the mesh's points, then move(). Throws InvalidArgument, nothing moved, if the
   /// number does not match, or in the plane a z is not 0.
   void move(std::span<const Vec3> positions);
   /// The first simplex that inverts while the vertices go on straight lines to `positions`, those of all the mesh's
-  /// points; nothing where all stay positive. The answer has the time and the features that meet. Nothing is moved.
+  /// points; nothing if all stay positive. The answer has the time and the features that meet. Nothing is moved.
   /// Throws and costs as dartcast/validity.hpp.
   [[nodiscard]] std::optional<CellInversion> first_inversion(std::span<const Vec3> positions) const;
-  /// move() to `positions` where no simplex inverts on the straight way there; else as far as `share`, in [0, 1], of
+  /// move() to `positions` if no simplex inverts on the straight way there; else as far as `share`, in [0, 1], of
   /// the way to the first inversion, so that every simplex stays positive. Returns the fraction of the way made: 0, and
-  /// nothing is moved, where the scene is not valid as it stands. Throws as move().
+  /// nothing is moved, if the scene is not valid as it stands. Throws as move().
   double move_until_inverted(std::span<const Vec3> positions, double share = 1.0);
 
   /// Edits the topology. `make` gets an edit of the complex (dartcast/complex_edit.hpp; the single edits are in
@@ -215,11 +215,11 @@ class Environment {
   /// ComplexEdit::commit(); then nothing is changed. Cost: that of the cells touched.
   ComplexEditReport edit(const std::function<void(ComplexEdit&)>& make);
   [[nodiscard]] std::uint64_t edit_count() const;
-  /// The report of the last edit; empty where there was none.
+  /// The report of the last edit; empty if there was none.
   [[nodiscard]] const ComplexEditReport& last_edit() const;
   /// Makes a set of particles follow the last edit. Particles in cells that were replaced are located again, exactly,
   /// among the cells that replaced them. Those that have no place in a free cell are treated as `orphaned` says. All
-  /// others keep their state bit for bit. Where particles are absorbed, those after them move up, as by remove().
+  /// others keep their state bit for bit. If particles are absorbed, those after them move up, as by remove().
   ///
   /// Suppose that the edit was made after a move, and the particles have not been advanced since. Then the vertices
   /// first carry them along, as by advance() without a motion of their own. They have then taken part in the move: for
@@ -227,18 +227,18 @@ class Environment {
   /// the edit was made before the last move. Then the particles follow it in the positions before that move, and await
   /// advance(), as after any move.
   ///
-  /// Throws InvalidArgument, nothing changed, where the particles are of another environment, or missed a move or an
+  /// Throws InvalidArgument, nothing changed, if the particles are of another environment, or missed a move or an
   /// earlier edit. Cost: the particles touched and the cells added; the first time after the particles have changed,
   /// linear in the particles (20 ns each). After a move that the particles have not followed: that of advance(), or,
-  /// where the move came last, a copy of the complex.
+  /// if the move came last, a copy of the complex.
   UpdateReport update_after_edit(Particles& particles, OrphanPolicy orphaned = OrphanPolicy::relocate) const;
 
   /// Advances every particle towards its target. After a move() the vertices also carry it along (docs/method.md).
   /// Without `respond` a particle stops at its first contact. Results are the same bits for any number of threads and
-  /// any order of particles. Throws InvalidArgument, nothing changed, where a target is not finite or outside the exact
-  /// range, or the sizes do not match. It does so, too, where an option is not positive, or the particles are of another
-  /// environment or missed a move or an edit. And it throws what a response throws, and where a response returns a
-  /// displacement that is not finite. Where one leads out of the exact range, the particle stops at the wall: the report
+  /// any order of particles. Throws InvalidArgument, nothing changed, if a target is not finite or outside the exact
+  /// range, or the sizes do not match. It does so, too, if an option is not positive, or the particles are of another
+  /// environment or missed a move or an edit. And it throws what a response throws, and if a response returns a
+  /// displacement that is not finite. If one leads out of the exact range, the particle stops at the wall: the report
   /// names it, and Counters::unfinished counts it. Cost: a few orientation tests per particle,
   /// whatever the size of the scene.
   StepReport advance(Particles& particles, std::span<const Vec3> targets, const ContactCallback& respond = {},
@@ -247,7 +247,7 @@ class Environment {
   /// Advances as advance(), but asks in rounds. Every particle stops at its next contact, and one call answers all of
   /// them. The particles then continue against the walls as these move in the step. Round k has the k-th contact of
   /// each particle that has so many. The rounds end when no particle has a contact to answer. So there are at most
-  /// StepOptions::max_contacts rounds, and none where no particle meets a wall.
+  /// StepOptions::max_contacts rounds, and none if no particle meets a wall.
   ///
   /// Results are the bits of advance() with a ContactCallback that gives the same answers: states, and the whole report
   /// with all counts. An empty function stops particles as in advance(). Throws as advance(), nothing changed. Cost: that
@@ -261,7 +261,7 @@ class Environment {
   /// The steps that one particle would take to each of these targets in turn, with its crossings from cell to cell. The
   /// particle stays as it is. States and contacts are those of advance(), to the same bits. The traces end with the
   /// first target before which the particle is stopped or held. After a move() the vertices carry the particle along in
-  /// the first step, as in the next advance(), and stand still in the others. Throws as advance(), and where there is
+  /// the first step, as in the next advance(), and stand still in the others. Throws as advance(), and if there is
   /// no such particle. Cost: as one step for each target, and some exact determinants for each crossing.
   [[nodiscard]] std::vector<Trace> trace(const Particles& particles, std::size_t particle,
                                          std::span<const Vec3> targets, const ContactCallback& respond = {},

@@ -77,7 +77,7 @@ struct Ligature {
   Plane plane;
   Vec3 place;
   TyingOptions tying = {0.0, 1.0};  ///< share 0: walls stay where they are
-  double duration = 0.0;            ///< s: the walls take so long; > 0 where they are drawn
+  double duration = 0.0;            ///< s: the walls take so long; > 0 if they are drawn
 };
 
 /// Joins two ends: the open faces within a distance of two planes (dartcast/cutting.hpp).
@@ -89,7 +89,7 @@ struct Reconnect {
 };
 
 /// Frees cells that are blocked, such as those of a valve that opens. `cells`: their numbers in the mesh
-/// (cells_of_region()); where an edit has replaced one, its parts. Cells that are free already stay so, and a number
+/// (cells_of_region()); if an edit has replaced one, its parts. Cells that are free already stay so, and a number
 /// that no cell has changes nothing. Cost: linear in the cells of the scene.
 struct OpenCells {
   static constexpr EventKind kind = EventKind::open;
@@ -107,7 +107,7 @@ struct Event {
   double at = 0.0;  ///< s: before the first step that begins at this time or later
   std::variant<Cut, Carve, Ligature, Reconnect, OpenCells, CloseCells> what;
   OrphanPolicy orphaned = OrphanPolicy::relocate;
-  bool required = false;  ///< whether a simulation ends where it is refused (EditRefused); else it goes on as it was
+  bool required = false;  ///< whether a simulation ends if it is refused (EditRefused); else it goes on as it was
 };
 /// The kind of an event.
 [[nodiscard]] EventKind kind_of(const Event& event);

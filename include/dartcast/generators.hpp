@@ -24,7 +24,7 @@ struct BoxOptions {
 };
 
 /// A conforming mesh of a box. Point (i, j, k) of the lattice has number i + (nx + 1) (j + (ny + 1) k) and lies at
-/// origin + size * i / nx and so on: exactly on integers where size equals cells. The middle points of cubes that are
+/// origin + size * i / nx and so on: exactly on integers if size equals cells. The middle points of cubes that are
 /// cut from their middle (pyramids) follow; each is the mean of the cube's corners. Cubes come in the same order, x
 /// fastest, and the cells of a cube one after another. Patches 1 to 6 ("xmin", "xmax", "ymin", "ymax", "zmin", "zmax")
 /// are the sides of the box. `free` is filled if a cube is blocked. With a jitter above about 0.5, cells may become
@@ -55,7 +55,7 @@ struct OctahedraOptions {
 
 /// A conforming mesh of 2 nx ny nz polyhedra, each with 8 hexagons and 6 squares: the body-centred cubic packing. Cube
 /// (i, j, k), x fastest, has one octahedron around its middle and one around its highest corner. So the block reaches
-/// half a cube beyond `size`. Coordinates are origin + size u / (4 n) with integers u. Where size / (4 cells) is a
+/// half a cube beyond `size`. Coordinates are origin + size u / (4 n) with integers u. If size / (4 cells) is a
 /// double of few digits they are exact, and every face is exactly planar. Patch 1, "boundary", is the block's ragged
 /// outside. `free` is filled if a cell is blocked.
 ///
@@ -100,7 +100,7 @@ struct VesselOptions {
 ///    vessel widens by a share a in radius.
 ///  - "path_length" (1): along the centre line from the inlet.
 ///
-/// Throws InvalidArgument where an option is out of the range in which every cell is positive:
+/// Throws InvalidArgument if an option is out of the range in which every cell is positive:
 ///
 ///  - radius > 0, trunk_length >= 4 radii, branch_lengths >= 6 radii;
 ///  - branch_radius in [0.7, 0.85], branch_angle in [0.4, 0.8], out_of_plane in [0, 0.7];
@@ -153,7 +153,7 @@ inline constexpr double largest_square_jitter = 0.45;
 inline constexpr double largest_polygon_jitter = 0.3;
 
 /// A conforming mesh of a rectangle, all z = 0. Point (i, j) of the lattice lies at origin + size * i / nx and so on:
-/// exactly on integers where size equals cells. Points come in the order i + (nx + 1) j, and so do squares, x fastest.
+/// exactly on integers if size equals cells. Points come in the order i + (nx + 1) j, and so do squares, x fastest.
 ///
 /// Polygons are hexagons. Around every third inner point of the lattice ((i + j) a multiple of 3) the six triangles are
 /// merged, and the point is left out. The remaining parts of the squares are quadrilaterals and triangles. Hexagons
@@ -174,7 +174,7 @@ struct MazeOptions {
   std::array<std::uint32_t, 2> rooms = {4, 4};  ///< columns and rows
   std::uint32_t room_cells = 8;                 ///< squares along a room's edge
   std::uint32_t door_cells = 2;                 ///< squares that a door is wide
-  std::uint32_t obstacles = 4;                  ///< squares blocked in each room; fewer where more would cut it
+  std::uint32_t obstacles = 4;                  ///< squares blocked in each room; fewer if more would cut it
   double extra_doors =
       0.1;  ///< share (rounded down) of the walls without a door that get one although no room needs it
   std::array<double, 2> origin = {0.0, 0.0};  ///< the lowest corner
@@ -187,7 +187,7 @@ struct MazeOptions {
 
 /// A generate_rectangle() of columns (room_cells + 1) - 1 by rows (room_cells + 1) - 1 squares. Between rooms the
 /// squares are blocked, one deep, apart from doors. A random spanning tree of the rooms has doors, and so have some
-/// other walls. Within rooms obstacles are blocked one by one, where the rest of the room and its doors stays
+/// other walls. Within rooms obstacles are blocked one by one, if the rest of the room and its doors stays
 /// connected. So all free cells are connected by edges between free cells, and every room has some. All boundary edges
 /// are in patch 1, "border".
 ///

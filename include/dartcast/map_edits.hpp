@@ -62,7 +62,7 @@ struct DraftLink {
 struct DraftFace {
   std::vector<DraftCorner> corners;  ///< counterclockwise seen from the outside
   DraftLink across;
-  CellFace from;  ///< the face of a replaced cell that this one continues; invalid where it is new
+  CellFace from;  ///< the face of a replaced cell that this one continues; invalid if it is new
   Patch patch;
   Vertex point;  ///< its Steiner point, the same from both sides; invalid: it has none
 };
@@ -156,7 +156,7 @@ class Transaction {
   /// plan_replacement() does; then this call has changed nothing.
   std::vector<Cell> replace(std::span<const Cell> removed, std::span<const CellDraft> drafts);
 
-  /// As CombinatorialMap::set_free(), but undone with the transaction. Throws InvalidArgument where there is no such
+  /// As CombinatorialMap::set_free(), but undone with the transaction. Throws InvalidArgument if there is no such
   /// cell.
   void set_free(Cell c, bool free);
 
@@ -234,8 +234,8 @@ class Transaction {
   ShapeKey key_;  // of the last cell that was put; kept for its memory
 };
 
-// All edits below throw InvalidArgument where a dart, face or cell does not exist (an earlier edit replaced it). They
-// throw EditRefused, with the cell's source, the reason and a remedy, where the result would not be a map. They return
+// All edits below throw InvalidArgument if a dart, face or cell does not exist (an earlier edit replaced it). They
+// throw EditRefused, with the cell's source, the reason and a remedy, if the result would not be a map. They return
 // the new cells.
 
 /// The vertex that split_edge() made, and the cells that have it.
@@ -247,35 +247,35 @@ struct SplitEdge {
 /// Puts a vertex on the edge of d, in all cells around the edge.
 SplitEdge split_edge(Transaction& t, Dart d);
 
-/// Splits a face, on both its sides, by an edge between the origins of two of its darts. Refused where they are
-/// neighbours in the face, or where an edge of the cell joins them already. Returns the cell of a, then the cell beyond
+/// Splits a face, on both its sides, by an edge between the origins of two of its darts. Refused if they are
+/// neighbours in the face, or if an edge of the cell joins them already. Returns the cell of a, then the cell beyond
 /// the face. In the plane: the part with a, then the part with b.
 std::vector<Cell> split_face(Transaction& t, Dart a, Dart b);
 
 /// Splits a cell along a closed path of darts. Each dart starts where the one before ends, the first where the last
 /// ends, and no vertex comes twice. Returns the cell with the faces of the path's darts, then the cell with the faces
-/// beyond its edges. The new face between them has no patch. Refused where the path runs around a single face, and in
+/// beyond its edges. The new face between them has no patch. Refused if the path runs around a single face, and in
 /// the plane: use split_face() there.
 std::array<Cell, 2> split_cell(Transaction& t, std::span<const Dart> path);
 
 /// Merges the two cells at a face. The source is that of f.cell. Refused on the boundary, between a free and a blocked
-/// cell, and where the cells touch beyond that face. In the plane, as merge_faces().
+/// cell, and if the cells touch beyond that face. In the plane, as merge_faces().
 Cell merge_cells(Transaction& t, CellFace f);
 
-/// Merges the two faces at an edge, on both sides. Refused where there are more than two faces around the edge, or
-/// where these have more than the edge in common. In the plane, as merge_cells(): one polygon.
+/// Merges the two faces at an edge, on both sides. Refused if there are more than two faces around the edge, or
+/// if these have more than the edge in common. In the plane, as merge_cells(): one polygon.
 std::vector<Cell> merge_faces(Transaction& t, Dart d);
 
-/// Merges the two edges at the origin of d. Refused where there are more than two edges, and where a face is a triangle
+/// Merges the two edges at the origin of d. Refused if there are more than two edges, and if a face is a triangle
 /// there.
 std::vector<Cell> merge_edges(Transaction& t, Dart d);
 
 /// Sews a's face to b's, dart a to dart b: a's origin and b's end become one vertex, and so on around the faces. Each
-/// pair of vertices keeps the lower number. Refused where a face is not open, where the faces have different numbers of
-/// corners, or where a cell would have one vertex twice.
+/// pair of vertices keeps the lower number. Refused if a face is not open, if the faces have different numbers of
+/// corners, or if a cell would have one vertex twice.
 std::vector<Cell> sew(Transaction& t, Dart a, Dart b);
 
-/// Opens a face. Where this separates the darts of a vertex, the side of f.cell keeps the vertex and the other side
+/// Opens a face. If this separates the darts of a vertex, the side of f.cell keeps the vertex and the other side
 /// gets a copy. Refused on the boundary.
 std::vector<Cell> unsew(Transaction& t, CellFace f);
 
@@ -283,12 +283,12 @@ std::vector<Cell> unsew(Transaction& t, CellFace f);
 /// common.
 void remove(Transaction& t, Cell c);
 
-/// The dart of the cell from one vertex to another; invalid where there is none. Cost: the cell's darts.
+/// The dart of the cell from one vertex to another; invalid if there is none. Cost: the cell's darts.
 Dart find_dart(const CombinatorialMap& map, Cell c, Vertex from, Vertex to);
 
 // Orbits of a combinatorial map: the darts of a vertex, an edge, a face, a cell.
 
-// Each function returns every dart of the orbit once, d first. Where the map has a boundary, an orbit holds the darts
+// Each function returns every dart of the orbit once, d first. If the map has a boundary, an orbit holds the darts
 // that are connected to d across faces. So a vertex at which two parts touch without a common face has one orbit for
 // each part. Cost: its size, times its logarithm.
 

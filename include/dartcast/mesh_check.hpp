@@ -64,7 +64,7 @@ inline void add_finding(std::vector<Finding>& list, Finding finding) {
   if (finding.count > 0) list.push_back(std::move(finding));
 }
 
-/// Repairs a mesh in place where no guess is needed, and reports it:
+/// Repairs a mesh in place if no guess is needed, and reports it:
 ///
 ///  - collapsed: cells with repeated corners, as a prism in the form of a hexahedron, get the type that they have
 ///    without;

@@ -49,7 +49,7 @@ struct DataArray {
 ///  - pyramid: 0 1 2 3 the base, counterclockwise as seen from the inside, 4 the apex (as in VTK and Gmsh);
 ///  - polyhedron: connectivity holds the number of faces, then for each face its number of corners and the corners,
 ///    counterclockwise as seen from the outside;
-///  - triangle, quadrilateral, polygon: counterclockwise as seen from above, where z = 0 for all points.
+///  - triangle, quadrilateral, polygon: counterclockwise as seen from above, if z = 0 for all points.
 ///
 /// All cells have the same dimension. In the plane the faces of a cell, and those of patches, are edges of two corners.
 struct MeshData {
@@ -70,7 +70,7 @@ struct MeshData {
   std::map<std::int32_t, std::string> patch_names;  ///< an empty name: no patch
   std::vector<std::int32_t>
       patch_order;  ///< tags, in the order of the patches' numbers; those left out follow, by face
-  /// Tags of patches whose faces are walls although two cells have them, as OpenFOAM's baffles. Where both cells' sides
+  /// Tags of patches whose faces are walls although two cells have them, as OpenFOAM's baffles. If both cells' sides
   /// are patch faces, each has the corners as its cell has them.
   std::vector<std::int32_t> baffle_tags;
 

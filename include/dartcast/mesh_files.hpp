@@ -44,19 +44,19 @@ struct ReadOptions {
 
 /// A mesh as read, and what was found in it.
 struct MeshFile {
-  MeshData mesh;  ///< to be used only where report.valid()
+  MeshData mesh;  ///< to be used only if report.valid()
   MeshReport report;
 };
 
 /// Reads a mesh by the file's ending and content, and checks and repairs it: .vtu, .pvtu and .vtk (legacy);
 /// .msh, .msh2, .msh4 (Gmsh 1, 2 and 4); .mesh and .meshb (Medit); .node or .ele, with the other beside it
 /// (TetGen). Or the folder of an OpenFOAM case (formats/openfoam.hpp) or of SimVascular (formats/vtp_surface.hpp).
-/// The cell array `free` of a .vtu or .vtk file becomes MeshData::free where write_mesh() has written it.
+/// The cell array `free` of a .vtu or .vtk file becomes MeshData::free if write_mesh() has written it.
 /// Nothing in the file makes this throw: a file that cannot be read has a defect of kind "file" in the report, with line
 /// or byte. Cost: a few times the file's size in memory.
 MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// The same, but throws InvalidMesh, with the file's name and the first defect, where the mesh is refused.
+/// The same, but throws InvalidMesh, with the file's name and the first defect, if the mesh is refused.
 MeshFile read_valid_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
 // Any file of a surface in space: read, checked and repaired.
@@ -71,7 +71,7 @@ bool is_surface_file(const std::filesystem::path& path);
 /// has. The option `max_memory` counts, the other does not. Cost: n log n; a few times the file's size in memory.
 MeshFile check_surface(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// The same, but throws InvalidMesh, with the file's name, the first defect and its first faces, where the surface is
+/// The same, but throws InvalidMesh, with the file's name, the first defect and its first faces, if the surface is
 /// refused: `Surface(read_surface(path).mesh)`.
 MeshFile read_surface(const std::filesystem::path& path, const ReadOptions& options = {});
 
@@ -92,7 +92,7 @@ struct SurfaceScene;  // dartcast/scene.hpp
 /// before each.
 ///
 /// Nothing in the files makes this throw: what is wrong is a defect in the report, with faces and a place. A program
-/// that is missing, fails, or takes too long is a defect of kind "mesher". Throws InvalidArgument where a member is out
+/// that is missing, fails, or takes too long is a defect of kind "mesher". Throws InvalidArgument if a member is out
 /// of range. Only the option `max_memory` has an effect; it also bounds the program. Cost: seconds for 10^4
 /// triangles.
 MeshFile mesh_surfaces(const SurfaceScene& scene, const ReadOptions& options = {});
@@ -113,16 +113,16 @@ void write_mesh(const MeshData& mesh, const std::filesystem::path& path);
 /// Writes a mesh in pieces: a .pvtu file that names a .vtu file beside it for each part, which ParaView opens as one mesh.
 /// read_mesh() reads them as the whole mesh, read_mesh_part() as parts. Each piece has its ghosts, and the numbers that its
 /// points and cells have in the whole. Precondition: check_and_repair() found the mesh valid. Throws as partition();
-/// InvalidArgument where the path does not end in .pvtu; Error where a file cannot be written.
+/// InvalidArgument if the path does not end in .pvtu; Error if a file cannot be written.
 void write_mesh_parts(const MeshData& mesh, std::uint32_t parts, const std::filesystem::path& path);
 
 /// Reads the pieces of part `part` of `parts` and puts them together; the pieces are shared out in their order. Throws
-/// InvalidMesh, with file and reason, where there are fewer pieces than parts, and where one is damaged, of another mesh,
+/// InvalidMesh, with file and reason, if there are fewer pieces than parts, and if one is damaged, of another mesh,
 /// or none of write_mesh_parts(). Only the option `max_memory` has an effect.
 MeshPart read_mesh_part(const std::filesystem::path& path, std::uint32_t parts, std::uint32_t part,
                         const ReadOptions& options = {});
 
-/// Writes bytes to a file. Throws Error where that fails.
+/// Writes bytes to a file. Throws Error if that fails.
 void write_bytes(const std::filesystem::path& path, std::string_view bytes);
 
 // The full check of a mesh file: `dartcast check`.

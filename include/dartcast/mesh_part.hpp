@@ -28,11 +28,11 @@ struct MeshPart {
 
 /// A part for each cell: halves of equal weight along the longest side of the cells' middles, again and again (M. J. Berger,
 /// S. H. Bokhari, "A partitioning strategy for nonuniform problems on multiprocessors", 1987). Blocked cells weigh a tenth:
-/// they take memory, and no time. Throws InvalidArgument where there are fewer cells than parts. Cost: linear in the
+/// they take memory, and no time. Throws InvalidArgument if there are fewer cells than parts. Cost: linear in the
 /// cells for each doubling of the parts, about 0.1 us a cell.
 std::vector<std::uint32_t> partition(const MeshData& mesh, std::uint32_t parts);
 
-/// Cuts a part out. `owners`: the part of each cell of the whole, each less than `parts`. Throws InvalidArgument where their
+/// Cuts a part out. `owners`: the part of each cell of the whole, each less than `parts`. Throws InvalidArgument if their
 /// number does not match. Precondition: check_and_repair() has found nothing to repair, and the cells are of space. Cost:
 /// linear in the whole mesh.
 MeshPart mesh_part(const MeshData& whole, std::span<const std::uint32_t> owners, std::uint32_t parts,
@@ -42,7 +42,7 @@ MeshPart mesh_part(const MeshData& whole, std::span<const std::uint32_t> owners,
 bool has_parts(const BoxOptions& options);
 
 /// One of `parts` parts of generate_box(), to the same bits, made without the rest: its cubes, and the cubes around them.
-/// Throws InvalidArgument as generate_box(), where there are fewer cubes than parts, and where has_parts() is false: cubes
+/// Throws InvalidArgument as generate_box(), if there are fewer cubes than parts, and if has_parts() is false: cubes
 /// that are mixed or blocked at random depend on all others. Cost: that of the part.
 MeshPart box_part(const BoxOptions& options, std::uint32_t parts, std::uint32_t part);
 

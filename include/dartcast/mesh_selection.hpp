@@ -13,14 +13,14 @@ namespace dartcast {
 // Which cells particles may enter: by region or by an array of the file.
 
 /// Sets mesh.free to 1 in the cells of the named regions, 0 elsewhere. A region is named by its name or by its tag in
-/// digits. Throws InvalidMesh, which lists the regions that exist, where a name is none of them. Then mesh.free is
+/// digits. Throws InvalidMesh, which lists the regions that exist, if a name is none of them. Then mesh.free is
 /// unchanged.
 void select_free_regions(MeshData& mesh, std::span<const std::string> regions);
 
 /// The cells of a region, by their numbers in the mesh. Throws as select_free_regions().
 std::vector<std::uint32_t> cells_of_region(const MeshData& mesh, const std::string& region);
 
-/// As select_free_regions(), by a cell array of one component: a cell is free where its value is one of `values`.
+/// As select_free_regions(), by a cell array of one component: a cell is free if its value is one of `values`.
 /// Throws InvalidMesh, which lists the arrays that exist, if there is no such array or it has several components. It
 /// also throws if no cell has one of the values.
 void select_free_values(MeshData& mesh, const std::string& array, std::span<const double> values);
@@ -28,7 +28,7 @@ void select_free_values(MeshData& mesh, const std::string& array, std::span<cons
 // Selection of the groups of wall faces to distinguish.
 
 /// Keeps the patch faces of the named patches, and drops the others. A patch is named by its name or, if it has none,
-/// by its tag in digits. Throws InvalidMesh, which lists the patches that exist, where a name is none of them. Then the
+/// by its tag in digits. Throws InvalidMesh, which lists the patches that exist, if a name is none of them. Then the
 /// mesh is unchanged.
 void select_patches(MeshData& mesh, std::span<const std::string> names);
 

@@ -7,7 +7,7 @@
 
 namespace dartcast {
 
-/// Starts MPI, and ends it. Where the program has started MPI itself, both do nothing. One at a time; all communication is
+/// Starts MPI, and ends it. If the program has started MPI itself, both do nothing. One at a time; all communication is
 /// by the thread that makes it.
 class MpiSession {
  public:

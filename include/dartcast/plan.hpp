@@ -52,7 +52,7 @@ struct RunPlan {
 /// sample parts on this machine, one after another, and fills them with particles. It measures their memory, the time
 /// of a step, and the particles that leave. docs/benchmark.md says how the other times follow. With `cells` of
 /// another number than the mesh has, ghosts and particles that leave grow as the surface of a part. Throws
-/// InvalidArgument where an option is out of range or there are fewer cells than ranks. Precondition:
+/// InvalidArgument if an option is out of range or there are fewer cells than ranks. Precondition:
 /// check_and_repair() found the mesh valid, and it is of space. Cost: about 1 us a cell, and the samples.
 RunPlan plan_run(const MeshData& mesh, const PlanOptions& options);
 

@@ -38,12 +38,12 @@ inline Vec3 flushed(Vec3 x) {
   return x;
 }
 
-/// A sign, or `undecidable` where a coordinate is not finite or above largest_magnitude. It is never a wrong sign.
+/// A sign, or `undecidable` if a coordinate is not finite or above largest_magnitude. It is never a wrong sign.
 enum class Sign : std::int8_t { negative = -1, zero = 0, positive = 1, undecidable = 2 };
 
 constexpr Sign operator-(Sign s) { return s == Sign::undecidable ? s : static_cast<Sign>(-static_cast<int>(s)); }
 
-/// Sign of det[b - a, c - a, d - a]. It is positive where a, b, c turn counterclockwise as seen from d. The volume of
+/// Sign of det[b - a, c - a, d - a]. It is positive if a, b, c turn counterclockwise as seen from d. The volume of
 /// the tetrahedron (a, b, c, d) is a sixth of the determinant. Cost: about 7 ns when the filter decides, 25 ns on
 /// lattices, 0.1 to 2 us elsewhere.
 Sign orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
@@ -67,7 +67,7 @@ inline constexpr double determinant_error = 6.0 * (7.0 + 56.0 * 0x1p-53) * 0x1p-
 
 /// The range of the three factors of m (two in the plane): for the bound to hold, and for a filter to decide. (If a
 /// factor is not a number, so is the bound, or the value, and nothing exceeds it.) A coordinate beyond
-/// largest_magnitude is at least 2^248 away from any other double. So where a filter decides, all coordinates are
+/// largest_magnitude is at least 2^248 away from any other double. So if a filter decides, all coordinates are
 /// within the exact range, although it looks only at differences.
 inline constexpr double smallest_extent = 0x1p-234;
 inline constexpr double largest_extent = 0x1p+301;
@@ -99,10 +99,10 @@ Vec3 extent_of(const Vec3& first, const Vectors&... rest) {
 /// nothing if every coordinate is a multiple of a unit g of its axis, and the differences are below 2^16 g. Then the
 /// differences are exact, and so is every sum of products, one factor from each axis, that stays below 2^53 units: a
 /// determinant of three differences (below 2^51), or two of them in a product with the sum of three more. The result is
-/// false where a coordinate is not finite. Precondition: such products do not underflow or overflow. This is so with
+/// false if a coordinate is not finite. Precondition: such products do not underflow or overflow. This is so with
 /// bound_holds(), or if each extent is 0 or in [2^-250, 2^301].
 ///
-/// Proof. g is the unit in the last place of c = 2^37 extent, so g > 2^-53 c = 2^-16 extent. (Where c is so small that
+/// Proof. g is the unit in the last place of c = 2^37 extent, so g > 2^-53 c = 2^-16 extent. (If c is so small that
 /// g is the smallest double, extent is below 2^16 g, too.) |x| + c is at least c, so it rounds to a multiple of g.
 /// Subtracting c leaves a multiple of g, however it is rounded. So the result can equal |x| only if |x| is a multiple
 /// of g. Conversely it does equal |x| if |x| is a multiple of g below c. With bound_holds(), each g is above 2^-16
@@ -118,7 +118,7 @@ bool rounds_nothing(const Vec3& extent, const Points&... points) {
   return (((off(points.x, c.x) + off(points.y, c.y)) + off(points.z, c.z)) + ...) == 0.0;
 }
 
-/// Sign of det[b - a, c - a] of x and y alone. It is positive where a, b, c turn counterclockwise. Half of the
+/// Sign of det[b - a, c - a] of x and y alone. It is positive if a, b, c turn counterclockwise. Half of the
 /// determinant is the area of the triangle. Exactness and cost as for orient3d().
 Sign orient2d(const Vec3& a, const Vec3& b, const Vec3& c);
 
@@ -128,7 +128,7 @@ Sign orient2d(const Vec3& a, const Vec3& b, const Vec3& c, std::uint64_t& exact)
 /// The same sign without the filter.
 Sign orient2d_exact(const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// The determinant of orient2d() as a double, accurate to 2^-49 of itself, with the exact sign. Not a number where a
+/// The determinant of orient2d() as a double, accurate to 2^-49 of itself, with the exact sign. Not a number if a
 /// coordinate is outside the range.
 double orient2d_value(const Vec3& a, const Vec3& b, const Vec3& c);
 
@@ -146,8 +146,8 @@ constexpr bool plane_bound_holds(double x, double y) { return are_plane_extents(
 /// As filter_applies(), for plane_error.
 constexpr bool plane_filter_applies(double x, double y) { return are_plane_extents(x, y, largest_decided_extent); }
 
-/// The determinant of orient3d() as a double, accurate to 2^-49 of itself, with the exact sign (0 only where it is 0).
-/// Not a number where a coordinate is outside the range.
+/// The determinant of orient3d() as a double, accurate to 2^-49 of itself, with the exact sign (0 only if it is 0).
+/// Not a number if a coordinate is outside the range.
 double orient3d_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 /// A point infinitesimally beside p, for ties: p + e w + (e^2, e^3, e^4). Here w is the sum of (opposite vertex - p)
@@ -157,7 +157,7 @@ class SymbolicPerturbation {
   /// `opposite`: the vertices opposite to the facets on which p lies; at most 3.
   SymbolicPerturbation(const Vec3& p, std::span<const Vec3> opposite);
 
-  /// Sign of orient3d(a, b, p + shift, q + shift) where orient3d(a, b, p, q) is zero. Zero only where pq is parallel to
+  /// Sign of orient3d(a, b, p + shift, q + shift) if orient3d(a, b, p, q) is zero. Zero only if pq is parallel to
   /// ab.
   [[nodiscard]] Sign of_line(const Vec3& a, const Vec3& b, const Vec3& q) const;
 
@@ -165,7 +165,7 @@ class SymbolicPerturbation {
   [[nodiscard]] Sign of_line_exact(const Vec3& a, const Vec3& b, const Vec3& q) const;
 
   Vec3 p_;
-  std::array<Vec3, 3> opposite_;  // p itself where there are fewer: it adds nothing
+  std::array<Vec3, 3> opposite_;  // p itself if there are fewer: it adds nothing
 };
 
 /// The same in the plane: p + e w + (e^2, e^3).
@@ -174,7 +174,7 @@ class PlanarSymbolicPerturbation {
   /// `opposite`: the vertices opposite to the facets on which p lies; at most 2.
   PlanarSymbolicPerturbation(const Vec3& p, std::span<const Vec3> opposite);
 
-  /// Sign of orient2d(p + shift, q0 + shift, c) where orient2d(p, q0, c) is zero, whatever c. Zero only where p is q0.
+  /// Sign of orient2d(p + shift, q0 + shift, c) if orient2d(p, q0, c) is zero, whatever c. Zero only if p is q0.
   [[nodiscard]] Sign of_line(const Vec3& q0) const;
 
  private:

@@ -45,16 +45,16 @@ struct Subdivided {
 /// For that, one vertex among them must be joined to a vertex on each edge. If there are several such vertices, those
 /// next to the middle are taken. Other faces that may lie in one plane are subdivided separately.
 ///
-/// Throws InvalidArgument where there is no such cell. Throws EditRefused, nothing changed, where a face would have
+/// Throws InvalidArgument if there is no such cell. Throws EditRefused, nothing changed, if a face would have
 /// fewer than three corners, or the result would not be a map. Cost: that of the cells around the cell's edges.
 Subdivided subdivide(ComplexEdit& edit, Cell c);
 
-/// Makes the cell again. Returns it, then the new cells around it. Middles of faces and edges are removed where no
+/// Makes the cell again. Returns it, then the new cells around it. Middles of faces and edges are removed if no
 /// other cell needs them. A middle that a neighbour needs is removed when that neighbour is made again. Right after
 /// subdivide() the map is as before, to the last face and mark, except for the numbers of the cells.
 ///
-/// Throws InvalidArgument where the named part does not exist any more (update_after_edit() was not called). Throws
-/// EditRefused, nothing changed, where parts are missing (they were subdivided themselves, merged or removed) or are
+/// Throws InvalidArgument if the named part does not exist any more (update_after_edit() was not called). Throws
+/// EditRefused, nothing changed, if parts are missing (they were subdivided themselves, merged or removed) or are
 /// not all free or all blocked. Cost: that of the cells around the cell's edges.
 std::vector<Cell> coarsen(ComplexEdit& edit, const Subdivision& subdivision);
 
@@ -68,8 +68,8 @@ void update_after_edit(const CombinatorialMap& map, std::span<const Cell> added,
 /// with its split faces, or only with others that move, is divided, too. Returns the cells in the place of the given
 /// ones. They are convex, so any plane can cut them.
 ///
-/// Throws InvalidArgument where there is no such cell, or in the plane. Throws EditRefused, nothing changed, where a
-/// cell has a simplex that is not positive; or where it needs a Steiner point after earlier edits, before commit().
+/// Throws InvalidArgument if there is no such cell, or in the plane. Throws EditRefused, nothing changed, if a
+/// cell has a simplex that is not positive; or if it needs a Steiner point after earlier edits, before commit().
 /// Cost: that of the cells and their neighbours.
 std::vector<Cell> divide_into_simplices(ComplexEdit& edit, std::span<const Cell> cells);
 
@@ -120,8 +120,8 @@ struct RepairReport {
 ///
 /// If there are no such cells, or none can be repaired, the map stays as it is, to the last record. After edits in the
 /// same ComplexEdit that have not been committed, cells are checked without the Steiner points that the commit gives
-/// them. Throws InvalidArgument where there is no such cell. Cost: that of the largest regions tried, whatever the size
-/// of the scene. Where regions are connected, it is paid once for each repair.
+/// them. Throws InvalidArgument if there is no such cell. Cost: that of the largest regions tried, whatever the size
+/// of the scene. If regions are connected, it is paid once for each repair.
 RepairReport repair(ComplexEdit& edit, std::span<const Cell> cells, const RepairOptions& options = {});
 
 }  // namespace dartcast

@@ -21,7 +21,7 @@ struct ReplayResult {
 
 /// Takes the step again in an environment of the replay's cells: by a batch of equal particles, in rounds and by trace().
 /// Results must be the same bits, the end must pass the audit and lie in the chamber where the step started. Throws
-/// InvalidMesh where the cells make no environment, and InvalidArgument where the state does not fit them. Cost: that of
+/// InvalidMesh if the cells make no environment, and InvalidArgument if the state does not fit them. Cost: that of
 /// an Environment.
 ReplayResult replay(const StepReplay& step);
 

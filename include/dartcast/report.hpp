@@ -24,7 +24,7 @@ struct ReportSummary {
   std::filesystem::path file;
   std::uint64_t bytes = 0;
   std::uint64_t particles = 0;           ///< in the report
-  std::uint64_t particles_recorded = 0;  ///< by the run: evenly chosen by id where it had more than 20,000
+  std::uint64_t particles_recorded = 0;  ///< by the run: evenly chosen by id if it had more than 20,000
   std::uint64_t particles_of_run = 0;
   std::uint64_t frames = 0;
   std::uint64_t frames_recorded = 0;
@@ -32,8 +32,8 @@ struct ReportSummary {
 };
 
 /// Makes report.html in a run's folder from what the run recorded there (report.bin, stats.csv, summary.json,
-/// scene.toml). The page needs no other file and no network. Throws Error where the folder holds no recording, or a file
-/// of it is damaged; InvalidArgument where an option is 0, or there are more than 65,535 frames. Cost: linear in the
+/// scene.toml). The page needs no other file and no network. Throws Error if the folder holds no recording, or a file
+/// of it is damaged; InvalidArgument if an option is 0, or there are more than 65,535 frames. Cost: linear in the
 /// recording.
 ReportSummary write_report(const std::filesystem::path& run_folder, const ReportOptions& options = {});
 

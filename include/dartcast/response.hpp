@@ -57,7 +57,7 @@ struct Escape {
 /// A response for every patch. Wall faces without a patch, and patches without a response, get the general one.
 class WallResponses {
  public:
-  /// Throws InvalidArgument where restitution or friction is out of range.
+  /// Throws InvalidArgument if restitution or friction is out of range.
   explicit WallResponses(const WallResponse& general = {});
   void set(Patch patch, const WallResponse& response);
   [[nodiscard]] const WallResponse& of(Patch patch) const {
@@ -76,7 +76,7 @@ class WallResponses {
 /// Whether a particle still moves, and why not.
 enum class ParticleStatus : std::uint8_t { alive, stuck, absorbed, escaped };
 
-/// A constant acceleration of all particles, where nothing else changes their velocities between contacts: each target
+/// A constant acceleration of all particles, if nothing else changes their velocities between contacts: each target
 /// is position + velocity * duration, with the velocity after the acceleration (the symplectic rule of Euler).
 struct Acceleration {
   Vec3 value;
@@ -84,7 +84,7 @@ struct Acceleration {
 };
 
 /// A callable for Environment::advance() that answers contacts by `responses` and writes each particle's new velocity
-/// and status. The patch of the wall met first decides which response it is; where that is a reflection, each wall
+/// and status. The patch of the wall met first decides which response it is; if that is a reflection, each wall
 /// gives its own restitution and friction. `velocities` in length per time, `dt` the duration > 0 in which the vertices
 /// move. The spans, one entry per particle, and `responses` must outlive it. A particle already absorbed, escaped or
 /// stuck goes no further at a contact: give it its own position as the target.
@@ -101,7 +101,7 @@ ContactCallback respond_with(const WallResponses& responses, std::span<Vec3> vel
 /// Serves particles that a step has stopped at a wall beyond their last contact (StepReport::stopped). Each gets a
 /// velocity that all walls met in the step permit, with no more energy than it had at that wall. They stand still for
 /// the rest of the step, so gravity gives them no energy in it. Call it after an advance() with respond_with(), with
-/// the same arguments. Cost: linear in the contacts of the step; nothing where none is stopped.
+/// the same arguments. Cost: linear in the contacts of the step; nothing if none is stopped.
 void hold_stopped(const StepReport& report, const WallResponses& responses, std::span<Vec3> velocities,
                   std::span<const ParticleStatus> statuses, double dt, const Acceleration& acceleration = {});
 

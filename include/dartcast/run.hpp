@@ -63,18 +63,18 @@ struct Summary {
   double seconds_write = 0.0;           ///< the steps' thread, with output: copies for it, and waits
   double seconds_writing_thread = 0.0;  ///< the thread that writes files, at the same time as the steps
   double seconds_report = 0.0;          ///< recording for the report, and writing it
-  std::optional<ReportSummary> report;  ///< where one was written
-  std::optional<EventLog> surgery;      ///< where the scene has events or is remeshed
+  std::optional<ReportSummary> report;  ///< if one was written
+  std::optional<EventLog> surgery;      ///< if the scene has events or is remeshed
   std::vector<BodySummary> bodies;
   std::vector<CatheterSummary> catheters;
   std::vector<SolidSummary> solids;
-  std::optional<StatisticsSummary> statistics;  ///< where the scene wants any
+  std::optional<StatisticsSummary> statistics;  ///< if the scene wants any
   std::optional<Audit> audit;
   std::filesystem::path replay;  ///< of the first step that failed the audit; empty: none did, or there is no folder
   std::string state_hash;
 };
 
-/// One JSON object. Entries that do not apply to this run are left out. Throws InvalidArgument where there are values for
+/// One JSON object. Entries that do not apply to this run are left out. Throws InvalidArgument if there are values for
 /// more patches than patch_names has, or for more planes than options.
 std::string summary_json(const Summary& summary);
 
@@ -97,7 +97,7 @@ struct RunOptions {
   std::optional<std::uint64_t> seed;   ///< instead of the scene's
   bool audit = false;                  ///< check each particle after each step
   bool skip_bad_cells = false;         ///< as EnvironmentScene::skip_bad_cells, which may be set as well
-  /// Go on from the last checkpoint in the folder; from the start where there is none. The outcome is the same as of a
+  /// Go on from the last checkpoint in the folder; from the start if there is none. The outcome is the same as of a
   /// run that was never cut off.
   bool resume = false;
   std::uint64_t max_memory = 0;  ///< as in ReadOptions, for each file that is read
@@ -108,13 +108,13 @@ struct RunOptions {
   Partition partition = Partition::particles;
 };
 
-/// Called after each step with the number of steps done and of all. Returns whether to go on. Where it returns false
-/// the run is cancelled: the output folder is complete up to this step, and `resume` can go on from there. Where ranks
+/// Called after each step with the number of steps done and of all. Returns whether to go on. If it returns false
+/// the run is cancelled: the output folder is complete up to this step, and `resume` can go on from there. If ranks
 /// share the run, each calls its own, and one that returns false cancels the run on all.
 using Progress = std::function<bool(std::uint64_t done, std::uint64_t all)>;
 
-/// Runs a scene, and reads the files that it names. Throws Error and its kinds where the scene, its mesh or its
-/// positions cannot be used, or output cannot be written; and RankFailed where another rank has failed. Where ranks share
+/// Runs a scene, and reads the files that it names. Throws Error and its kinds if the scene, its mesh or its
+/// positions cannot be used, or output cannot be written; and RankFailed if another rank has failed. If ranks share
 /// the run, the first returns the summary of all.
 Summary run_scene(const Scene& scene, const RunOptions& options, const Progress& progress = {});
 
@@ -123,7 +123,7 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
 /// Writes the particles of a run's frames into an OpenFOAM case, as the cloud of this name: positions with their cells,
 /// U and origId, in TIME/lagrangian/CLOUD, which OpenFOAM's programs and ParaView read. Files of an earlier cloud of the
 /// same name and time are replaced, and nothing else is changed. Returns the number of frames. Precondition: the run's
-/// mesh is that of the case, and was not edited. Throws InvalidArgument where there is no such case, or the name is none; Error where a frame cannot be read or a file cannot be written.
+/// mesh is that of the case, and was not edited. Throws InvalidArgument if there is no such case, or the name is none; Error if a frame cannot be read or a file cannot be written.
 std::size_t write_lagrangian(const std::filesystem::path& run_folder, const std::filesystem::path& openfoam_case,
                              const std::string& cloud = "particles");
 

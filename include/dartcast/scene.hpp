@@ -38,7 +38,7 @@ struct NamedSurface {
 
 /// The program that makes tetrahedra.
 enum class Mesher : std::uint8_t {
-  any,  ///< tetgen; gmsh where tetgen is not there or fails
+  any,  ///< tetgen; gmsh if tetgen is not there or fails
   tetgen,
   gmsh
 };
@@ -65,7 +65,7 @@ using MeshSource = std::variant<std::filesystem::path, BoxOptions, OctahedraOpti
 struct FreeRegions {
   std::vector<std::string> regions;
 };
-/// Cells are free where a cell array of the mesh file has one of these values.
+/// Cells are free if a cell array of the mesh file has one of these values.
 struct FreeValues {
   std::string array;
   std::vector<double> values;
@@ -190,7 +190,7 @@ struct FieldScene {
   /// Empty: there is no field. In the mesh, "U_*" stands for all arrays with a whole number in place of the star, by
   /// number: one for each time.
   std::string array;
-  std::optional<FieldPlace> at;  ///< none: the points where they have the array, else the cells
+  std::optional<FieldPlace> at;  ///< none: the points if they have the array, else the cells
   FieldFrame frame = FieldFrame::space;
   /// Mesh files with the same points and cells, one for each time; or one name with a star in place of a whole number;
   /// or one .pvd file or case of OpenFOAM, which give the times, too. Empty: the arrays of the scene's mesh.
@@ -199,7 +199,7 @@ struct FieldScene {
   double spacing = 0.0;       ///< s from one time to the next, the first at 0; 0: by `times`
   double period = 0.0;        ///< FieldSamples::period
   Interpolation interpolation = Interpolation::linear;  ///< FieldSamples::interpolation
-  /// Where it can read, used instead of all above but `frame`. load_scene_files() makes it for files. They are read
+  /// If it can read, used instead of all above but `frame`. load_scene_files() makes it for files. They are read
   /// while the simulation runs.
   FieldSamples samples;
 
@@ -257,14 +257,14 @@ enum class Compression : std::uint8_t { none, fast, small };
 struct OutputScene {
   std::uint64_t every = 10;  ///< steps between two frames; 0: none
   bool contacts = false;
-  bool report = true;  ///< report.html, where `every` > 0 (dartcast/report.hpp)
+  bool report = true;  ///< report.html, if `every` > 0 (dartcast/report.hpp)
   Compression compression = Compression::none;
 };
 
 /// A scene: all that a run needs. docs/scene.md has the keys of its file.
 struct Scene {
   std::string name;            ///< the file's, without its ending
-  std::filesystem::path file;  ///< empty where the scene comes from none
+  std::filesystem::path file;  ///< empty if the scene comes from none
   std::string text;            ///< of the file
   std::uint64_t seed = 1;
   EnvironmentScene environment;

@@ -22,21 +22,21 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& path);
 /// A scene with its files read.
 struct LoadedScene {
   Scene scene;      ///< names no file but frames to read later: a Simulation can be made of it
-  Finding skipped;  ///< bad cells that were left out, where the scene wants that
+  Finding skipped;  ///< bad cells that were left out, if the scene wants that
   /// Of the mesh, about its walls: faces of cyclic patches (walls here), and of named groups between two free cells (none).
   std::vector<Finding> warnings;
 };
 
 /// Reads the files that a scene names: its mesh, positions, surfaces of bodies. It reads the first of the deformation's
 /// frames and of a field's files, and checks that the others exist: they are read when they are needed. The mesh has
-/// its scale, free cells and patches as the scene says, also where it comes from a generator. Only the options
+/// its scale, free cells and patches as the scene says, also if it comes from a generator. Only the options
 /// `max_memory` and `kept_mesh` have an effect. Throws Error and its kinds, naming the file and its place in the scene.
 LoadedScene load_scene_files(Scene scene, const ReadOptions& options = {}, Threads threads = {});
 
 /// The same for ranks that share the scene by cells (Partition::cells): each gets its part of the mesh, and no rank but the
 /// first ever has the whole. A box is made in parts (has_parts()), and a .pvtu file is read in parts (read_mesh_part()):
 /// then the first does not have it, either. Other meshes are read or made by the first, which sends each its part. Frames
-/// of a deformation are read by all. Throws as load_scene_files(), and InvalidArgument where pieces are
+/// of a deformation are read by all. Throws as load_scene_files(), and InvalidArgument if pieces are
 /// to be changed in a way that needs the whole: patches by angle or array, bad cells left out. Collective.
 LoadedScene load_scene_part(Scene scene, Ranks& ranks, const ReadOptions& options = {}, Threads threads = {});
 

@@ -63,8 +63,8 @@ struct SharedStep {
 /// wait for each other. A function that throws on one rank alone must be followed by Ranks::fail() there.
 class SharedEnvironment {
  public:
-  /// `ranks` outlive it. Throws as Environment(); InvalidArgument where the part is of another rank, in the plane, and where
-  /// cells need Steiner points; InvalidMesh where the ranks' parts are not of one mesh.
+  /// `ranks` outlive it. Throws as Environment(); InvalidArgument if the part is of another rank, in the plane, and if
+  /// cells need Steiner points; InvalidMesh if the ranks' parts are not of one mesh.
   SharedEnvironment(MeshPart part, Ranks& ranks, Threads threads = {});
   SharedEnvironment(const SharedEnvironment&) = delete;
   SharedEnvironment& operator=(const SharedEnvironment&) = delete;

@@ -132,7 +132,7 @@ struct SimulationStep {
   [[nodiscard]] std::span<const Contact> contacts() const { return report.contacts.contacts; }
 };
 
-/// Sums over all steps so far. Where ranks share the particles, each has its own, but those of `start` and `injected`.
+/// Sums over all steps so far. If ranks share the particles, each has its own, but those of `start` and `injected`.
 struct SimulationTotals {
   std::uint64_t start = 0;  ///< particles added by add() and add_random()
   std::uint64_t injected = 0;
@@ -161,7 +161,7 @@ class SimulationCheckpoint {
   std::shared_ptr<const SimulationState> state_;
 };
 
-/// One checkpoint of those that the ranks of a simulation have saved after the same step. Throws InvalidArgument where
+/// One checkpoint of those that the ranks of a simulation have saved after the same step. Throws InvalidArgument if
 /// there is none, or they are of different steps.
 SimulationCheckpoint joined(std::span<const SimulationCheckpoint> parts);
 
@@ -221,7 +221,7 @@ struct SolidSummary {
 ///     the field's velocity there, or 0. With a field and no drag v = u, and g has no effect.
 ///  5. Particles advance by v dt, wall responses included. Those absorbed or escaped leave.
 ///  6. Bodies step, then catheters. Statistics take what happened.
-///  7. Where it is due, invalid cells are remeshed and crowded cells are subdivided.
+///  7. If it is due, invalid cells are remeshed and crowded cells are subdivided.
 /// With collisions the vertices move after 4; velocities are those at the places before. Spheres get impulses before they
 /// move and advance: from each other, from bodies and, at rest or among others, from walls within a quarter of their
 /// radius that reflect or let slide. These go on as in the last step, and are contacts when a sphere comes to them. Other
@@ -236,11 +236,11 @@ class Simulation {
  public:
   using AfterEdit = std::function<void(const Environment&)>;
 
-  /// `environment` outlives the simulation, and is moved and edited by it alone. Throws InvalidArgument where an option
+  /// `environment` outlives the simulation, and is moved and edited by it alone. Throws InvalidArgument if an option
   /// is out of range, or names no patch.
   explicit Simulation(Environment& environment, const SimulationOptions& options = {});
   /// Makes the environment, and all that the scene has in it. The scene is plain data: files that it names have been
-  /// read (load_scene_files() in dartcast/scene_file.hpp). Throws InvalidArgument where one has not been; InvalidMesh;
+  /// read (load_scene_files() in dartcast/scene_file.hpp). Throws InvalidArgument if one has not been; InvalidMesh;
   /// Error that names the particles, body, catheter or event that cannot be used.
   explicit Simulation(const Scene& scene, Threads threads = {}, Ranks* ranks = nullptr,
                       Partition partition = Partition::particles);
@@ -253,9 +253,9 @@ class Simulation {
   ~Simulation();
 
   void set_field(VelocityField field);
-  /// Accelerations of all particles (m / s^2), on top of gravity. They have no effect where there is a field and no drag.
+  /// Accelerations of all particles (m / s^2), on top of gravity. They have no effect if there is a field and no drag.
   void set_force(VectorField force);
-  /// Throws InvalidArgument where the deformation is made for another number of points, and in the plane as
+  /// Throws InvalidArgument if the deformation is made for another number of points, and in the plane as
   /// Deformation::check_plane().
   void set_deformation(Deformation deformation);
   /// Injects `rate` particles a second at random places of a patch, from the next step on. Throws as add(). Throws
@@ -265,38 +265,38 @@ class Simulation {
 
   /// Adds particles at these positions, as Environment::add(). `radius`: as is_radius(); a sphere that does not fit is
   /// moved out of walls by its first step, and out of other spheres little by little. `user_data`: of each of these
-  /// particles, a number for each name in the options; empty: zeros. Throws InvalidArgument, nothing added, where
+  /// particles, a number for each name in the options; empty: zeros. Throws InvalidArgument, nothing added, if
   /// a value is out of range.
   std::vector<AddResult> add(std::span<const Vec3> positions, const Vec3& velocity, double radius = 0.0,
                              std::span<const double> user_data = {});
   std::vector<AddResult> add(std::initializer_list<Vec3> positions, const Vec3& velocity, double radius = 0.0);
-  /// The same, with a velocity and a radius for each particle. Throws where the numbers do not match, too.
+  /// The same, with a velocity and a radius for each particle. Throws if the numbers do not match, too.
   std::vector<AddResult> add(std::span<const Vec3> positions, std::span<const Vec3> velocities,
                              std::span<const double> radii, std::span<const double> user_data = {});
-  /// Adds particles at random places of the free cells, uniformly by volume. Throws InvalidArgument where no cell is
+  /// Adds particles at random places of the free cells, uniformly by volume. Throws InvalidArgument if no cell is
   /// free or the count is beyond 2^31, or as add().
   void add_random(std::size_t count, const Vec3& velocity, double radius = 0.0, std::span<const double> user_data = {});
 
-  /// Adds a body of these particles, as Bodies::add(). Throws as that, and InvalidArgument where there are collisions
+  /// Adds a body of these particles, as Bodies::add(). Throws as that, and InvalidArgument if there are collisions
   /// and substeps are not 1.
   AddBodyResult add_body(std::span<const Vec3> points, const BodyOptions& options);
-  /// Adds a body or a catheter that is plain data. Throws Error that names it where it does not fit in.
+  /// Adds a body or a catheter that is plain data. Throws Error that names it if it does not fit in.
   void add(const BodyScene& body);
   void add(const CatheterScene& catheter);
   /// Likewise a solid. From then on the solids move with the vertices of the environment, and can stop these.
   void add(const SolidScene& solid);
 
-  /// Edits at given times, from now on; they replace those set before. Throws InvalidArgument where a time is negative
+  /// Edits at given times, from now on; they replace those set before. Throws InvalidArgument if a time is negative
   /// or beyond 2^53 steps, or in the plane an event is not a ligature.
   void set_events(std::vector<Event> events);
   /// Checks cells, and remeshes those that are not valid, every so many steps.
   void set_remeshing(const RemeshScene& remeshing);
   /// Subdivides crowded cells every so many steps, and merges the parts again once they hold few particles. Throws
-  /// InvalidArgument where an option is out of range, in the plane, and where cells are subdivided already.
+  /// InvalidArgument if an option is out of range, in the plane, and if cells are subdivided already.
   void set_adaptive_subdivision(const AdaptiveSubdivisionScene& subdivision);
 
   /// Keeps these statistics (dartcast/statistics.hpp) from now on; those kept before are dropped. A checkpoint holds
-  /// them, too. Throws InvalidArgument, nothing changed, where an option is out of range.
+  /// them, too. Throws InvalidArgument, nothing changed, if an option is out of range.
   void set_statistics(const StatisticsOptions& options);
 
   /// Throws as Environment::advance(), and Error that names the event that cannot be carried out (Event::required). Throws
@@ -306,30 +306,30 @@ class Simulation {
   /// Edits the environment between two steps, as Environment::edit(), and updates all that depends on it: particles
   /// (those absorbed count as such), bodies, catheters, the deformation, the field, and inlets. An inlet whose patch
   /// has no face at a free cell any more is closed until it has one. Throws as these, nothing changed. Cost: as these;
-  /// linear in the cells where there are inlets.
+  /// linear in the cells if there are inlets.
   SimulationEdit edit(const std::function<void(ComplexEdit&)>& make, OrphanPolicy orphaned = OrphanPolicy::relocate);
   /// Calls this at the end of each edit.
   void set_after_edit(AfterEdit after_edit);
-  /// Remeshes cells that are not valid now (dartcast/remeshing.hpp), by edit(). Nothing happens where all are. Cost: a
+  /// Remeshes cells that are not valid now (dartcast/remeshing.hpp), by edit(). Nothing happens if all are. Cost: a
   /// check of all cells, and the regions repaired.
   RepairReport repair(const RepairOptions& options = {});
   /// Subdivides and merges cells now, as set_adaptive_subdivision() says, by edit().
   AdaptiveSubdivisionReport adapt();
   /// Pulls vertices along over the next `duration` seconds, on top of the deformation; they stay there. `displacement`:
-  /// one per position of the environment. Throws as Deformation::add_pull(), and in the plane where one leaves it.
+  /// one per position of the environment. Throws as Deformation::add_pull(), and in the plane if one leaves it.
   void pull(std::span<const Vec3> displacement, double duration);
 
-  /// Where ranks share the particles, each has its own; joined() makes them one.
+  /// If ranks share the particles, each has its own; joined() makes them one.
   [[nodiscard]] SimulationCheckpoint checkpoint() const;
   /// Goes on from a checkpoint of a simulation made in the same way: every later step is then the same to the last bit.
   /// Repeats those edits by events that this simulation has not made yet. The caller makes other edits before
-  /// (go_to()). Replaces all particles; vertices move to the checkpoint's time. Throws InvalidArgument where a state
-  /// does not hold in this environment, and where edits must be repeated but there are particles. The particles are
+  /// (go_to()). Replaces all particles; vertices move to the checkpoint's time. Throws InvalidArgument if a state
+  /// does not hold in this environment, and if edits must be repeated but there are particles. The particles are
   /// then unchanged; edits that it has repeated remain. Each rank takes its own particles out of a checkpoint, which
   /// any number of ranks has saved.
   void restore(const SimulationCheckpoint& saved);
   /// Moves the vertices to their positions after so many steps, to repeat edits there before restore(). Throws
-  /// InvalidArgument where there are particles.
+  /// InvalidArgument if there are particles.
   void go_to(std::uint64_t steps);
 
   [[nodiscard]] const SimulationOptions& options() const;
@@ -352,7 +352,7 @@ class Simulation {
   [[nodiscard]] std::span<const double> user_data(std::size_t particle) const;
   [[nodiscard]] std::span<double> user_data(std::size_t particle);
 
-  /// None where no body has been added. Their velocities() may be changed between steps; the simulation calls step().
+  /// None if no body has been added. Their velocities() may be changed between steps; the simulation calls step().
   [[nodiscard]] const Bodies* bodies() const;
   [[nodiscard]] Bodies* bodies();
   [[nodiscard]] const BodiesStep& bodies_step() const;  ///< the last one
@@ -360,7 +360,7 @@ class Simulation {
   [[nodiscard]] const Catheter& catheter(std::size_t i) const;
   [[nodiscard]] const CatheterStep& catheter_step(std::size_t i) const;  ///< the last one
 
-  /// None where no solid has been added.
+  /// None if no solid has been added.
   [[nodiscard]] const SolidSet* solids() const;
   [[nodiscard]] const SolidStep& solids_step() const;  ///< the last one
 
@@ -369,7 +369,7 @@ class Simulation {
   [[nodiscard]] SimulationTotals totals_of_all() const;
   [[nodiscard]] std::uint64_t alive() const;  ///< the number of particles in the scene
   [[nodiscard]] const StatisticsOptions& statistics_options() const;
-  [[nodiscard]] const Statistics& statistics() const;  ///< empty where none are kept
+  [[nodiscard]] const Statistics& statistics() const;  ///< empty if none are kept
   [[nodiscard]] double seconds_solids() const;         ///< steps of bodies, catheters and solids so far
   [[nodiscard]] const EventLog& event_log() const;
   [[nodiscard]] std::vector<BodySummary> body_summaries() const;  ///< by id, those that left included

@@ -32,11 +32,11 @@ struct SolidMesh {
 
 /// The solid of a surface, closed or open. Each face is a fan from its lowest-numbered corner. One that is not convex is
 /// divided by cutting ears off, exactly. Points that no face uses are
-/// left out; the others keep their order. Throws InvalidMesh where check_and_repair_surface() refuses the surface.
+/// left out; the others keep their order. Throws InvalidMesh if check_and_repair_surface() refuses the surface.
 SolidMesh solid_of_surface(const MeshData& surface);
 
 /// The solid of the boundary of a mesh of cells, whatever their free marks. Points inside are left out; the others keep
-/// their order. Throws InvalidMesh where check_and_repair() refuses the mesh, or the mesh is of the plane.
+/// their order. Throws InvalidMesh if check_and_repair() refuses the mesh, or the mesh is of the plane.
 SolidMesh solid_of_cells(const MeshData& mesh);
 
 /// Points joined one after another by edges.
@@ -58,8 +58,8 @@ enum class SolidRefusal : std::uint8_t {
 /// The answer to a request to add one solid; also the state of a solid after an edit.
 struct SolidPlacement {
   SolidRefusal refusal = SolidRefusal::none;
-  std::uint32_t solid = 0xffffffffU;  ///< its index in the set; none (0xffffffff) where it is not added
-  /// Where it is refused: the vertices (numbers in the solid) of the place, the first `count` of these.
+  std::uint32_t solid = 0xffffffffU;  ///< its index in the set; none (0xffffffff) if it is not added
+  /// If it is refused: the vertices (numbers in the solid) of the place, the first `count` of these.
   std::array<std::uint32_t, 3> vertices{};
   std::uint8_t count = 0;
 };
@@ -138,25 +138,25 @@ struct SolidAudit {
 /// bits for any number of threads. Not guaranteed: solids may pass through each other, and through themselves.
 class SolidSet {
  public:
-  /// `environment` outlives the set. Its owner may move it only by move_with() where the set is not empty. Throws
-  /// InvalidArgument where the environment is of the plane.
+  /// `environment` outlives the set. Its owner may move it only by move_with() if the set is not empty. Throws
+  /// InvalidArgument if the environment is of the plane.
   explicit SolidSet(Environment& environment);
   ~SolidSet();
   SolidSet(const SolidSet&) = delete;
   SolidSet& operator=(const SolidSet&) = delete;
 
-  /// Adds a solid where it touches no wall and encloses none; else the answer says why, and nothing is added. Throws as
-  /// check(), and InvalidArgument where the set missed a move or an edit. Cost: as a step, and a search for its points
+  /// Adds a solid if it touches no wall and encloses none; else the answer says why, and nothing is added. Throws as
+  /// check(), and InvalidArgument if the set missed a move or an edit. Cost: as a step, and a search for its points
   /// (Environment::locate()).
   SolidPlacement add(const SolidMesh& mesh);
 
-  /// Removes a solid. Those after it move up. Throws InvalidArgument where there is no such solid.
+  /// Removes a solid. Those after it move up. Throws InvalidArgument if there is no such solid.
   void remove(std::uint32_t solid);
 
-  /// To be called after each edit of the environment, as Environment::update_after_edit(). A solid is stuck where a wall
+  /// To be called after each edit of the environment, as Environment::update_after_edit(). A solid is stuck if a wall
   /// that the edit made is in it, or leaves a vertex no free place. It stays until a
   /// later edit frees it, and the cells around its vertices carry it along when they move. Vertices that are outside after
-  /// the edit move to the nearest free place. Throws InvalidArgument, nothing changed, where there is none, or the set
+  /// the edit move to the nearest free place. Throws InvalidArgument, nothing changed, if there is none, or the set
   /// missed a move or an edit. Cost: that of Environment::update_after_edit(), and some 2 us for each edge and triangle.
   UpdateReport update_after_edit();
   /// All stuck solids, in order, and where each is stuck.
@@ -171,7 +171,7 @@ class SolidSet {
   [[nodiscard]] const Particles& particles() const;
 
   /// Inverse masses of all vertices, which share out the corrections; 1 at first. Vertices of 0 are not corrected. Throws
-  /// InvalidArgument where the number does not match, or one is negative or not finite.
+  /// InvalidArgument if the number does not match, or one is negative or not finite.
   void set_inverse_masses(std::span<const double> inverse_masses);
 
   /// Moves the vertices of all solids straight (a turn by its chord) towards these targets, with walls at rest. In order:
@@ -194,7 +194,7 @@ class SolidSet {
 
   [[nodiscard]] SolidCheckpoint checkpoint() const;
   /// Goes on from a checkpoint of a set with the same solids, in an equal environment after the same move. Every later
-  /// step is the same to the last bit. Throws InvalidArgument, nothing changed, where the checkpoint does not fit.
+  /// step is the same to the last bit. Throws InvalidArgument, nothing changed, if the checkpoint does not fit.
   void restore(const SolidCheckpoint& saved);
 
   /// Whether any edge or triangle meets a wall, in integers of any length, by code that shares nothing with the steps.

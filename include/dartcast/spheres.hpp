@@ -54,16 +54,16 @@ class SphereStepper {
   ///   that wall, and is tested against the walls as they stand at the end, as for points. The contact is where the
   ///   centre itself comes to a wall, if it does (its way relative to the cells is a chord).
   /// - Overlaps. A sphere may overlap walls at the start (after a move(): once the wall has carried it). It then
-  ///   first moves out along the normals, as far as other walls allow, and never through one. Where there is no room
+  ///   first moves out along the normals, as far as other walls allow, and never through one. If there is no room
   ///   it stays where its depths are balanced. It then makes its own motion. While it still overlaps it counts as a
   ///   sphere of the radius that there is room for. So it may go along and out, but not deeper.
   /// - options.max_contacts limits the contacts in a step, as for points.
   ///
-  /// `clearances`: no wall is nearer to a particle's centre, as walls and particles stand; none, or one each. Where a
+  /// `clearances`: no wall is nearer to a particle's centre, as walls and particles stand; none, or one each. If a
   /// sphere's way is within its clearance no walls are searched for. After a move() they are ignored.
   ///
-  /// Throws as Environment::advance(), and InvalidArgument where a radius is out of range or their number does not
-  /// match; then nothing is changed. Cost: that of a point where the clearance suffices. Else 0.1 to 0.3 us for each
+  /// Throws as Environment::advance(), and InvalidArgument if a radius is out of range or their number does not
+  /// match; then nothing is changed. Cost: that of a point if the clearance suffices. Else 0.1 to 0.3 us for each
   /// cell that the sphere reaches (three of them at a radius of 0.2 cell sizes), and 0.1 to 0.4 us for each wall
   /// triangle there. A contact costs some us.
   SphereReport advance(Environment& environment, Particles& particles, std::span<const double> radii,
@@ -85,7 +85,7 @@ SphereReport advance_spheres(Environment& environment, Particles& particles, std
 /// set of particles. Results depend on the arguments alone. A moved-from object can be used again.
 ///
 /// Environment::advance() first lets the cells carry a particle along, and then walks among walls at rest. This is right
-/// where no wall is in reach, and quick. Where walls turn much in a step it can miss a contact, invent one, or give the
+/// if no wall is in reach, and quick. If walls turn much in a step it can miss a contact, invent one, or give the
 /// time of another (docs/method.md has measurements).
 class SimultaneousStepper {
  public:
@@ -101,11 +101,11 @@ class SimultaneousStepper {
   ///   previous position to its current one. Whether the particle touches a wall is decided exactly for that motion.
   /// - Contacts. The time of the first one is never late, and early by at most 2^-20 of the step. Walls that are touched
   ///   within share_together count together. The particle then is where it was before the touch: 2^-20 of its way, or up to
-  ///   half of it where no nearer place is proved free. From there, and then, its new way is a straight motion of its own.
+  ///   half of it if no nearer place is proved free. From there, and then, its new way is a straight motion of its own.
   ///   So a later contact may lie before the one that led to it; it gets that one's time. Times never fall.
   /// - Along walls. A way along a wall ends 2^-20 of the wall's longest side off it.
-  /// - Where the particle is carried along instead, as by Environment::advance(), in the rest of its step. This is so
-  ///   where a cell in its reach becomes flat, and after options.max_contacts contacts. It is so, too, where the particle
+  /// - The particle may be carried along instead, as by Environment::advance(), in the rest of its step. This is so
+  ///   if a cell in its reach becomes flat, and after options.max_contacts contacts. It is so, too, if the particle
   ///   starts on a wall, or as near as rounding, or was stopped at one in its last step.
   ///
   /// Throws as Environment::advance(). Cost: some 1 us for a particle, and the same again for each

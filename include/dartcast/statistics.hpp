@@ -31,7 +31,7 @@ struct FaceHits {
 /// Counts contacts by wall face. A contact counts once, at the wall that the particle met first. So the hits of a
 /// patch are its contacts. Faces are named, not placed: hits go along when the vertices move.
 ///
-/// A face continues over an edit where a free cell has a wall with the same corners afterwards. Vertices that the edit
+/// A face continues over an edit if a free cell has a wall with the same corners afterwards. Vertices that the edit
 /// put on its edges, or took from them, make no difference. Every other face in the edit ends: one that was split,
 /// merged, or is no wall any more. Its hits are kept by patch (ended_by_patch()). New faces start at 0. So no hit is
 /// lost: the hits of the faces and those of ended faces are all contacts.
@@ -52,7 +52,7 @@ class WallHits {
   [[nodiscard]] std::vector<std::uint64_t> by_patch(const Environment& environment) const;
 
   /// Goes on from faces() and ended_by_patch() of an environment that was in the same state. Throws InvalidArgument,
-  /// nothing changed, where one of the faces is no wall of a free cell.
+  /// nothing changed, if one of the faces is no wall of a free cell.
   void restore(const Environment& environment, const std::vector<FaceHits>& faces, std::vector<std::uint64_t> ended);
 
  private:
@@ -82,7 +82,7 @@ struct SectionPlane {
   double radius = 0.0;  ///< of the disc around `point`; 0: the whole plane
 };
 
-/// Throws InvalidArgument, which names the plane, where its name is not as above, or another plane has it. It also
+/// Throws InvalidArgument, which names the plane, if its name is not as above, or another plane has it. It also
 /// throws for a point that is not finite or outside the exact range. So do a normal that is not finite or zero, and a
 /// radius that is not finite or negative.
 void check(std::span<const SectionPlane> planes);
@@ -96,16 +96,16 @@ struct PlaneCrossing {
   Vec3 point;          ///< on the plane, rounded
 };
 
-/// The crossings of a step, by particle, then by plane. A particle crosses a plane forward where its position before
+/// The crossings of a step, by particle, then by plane. A particle crosses a plane forward if its position before
 /// the step is behind the plane and its position after the step is not. It crosses backward in the opposite case. A
 /// position exactly on the plane is not behind it. So a particle that stops on the plane and goes on is counted once.
 /// The signs are exact. (Components of a normal below 2^-300 of the largest count as 0.)
 ///
-/// Only the two ends of the step count. Where a particle rebounds from a wall within the step, its way between them is
+/// Only the two ends of the step count. If a particle rebounds from a wall within the step, its way between them is
 /// not looked at. `share` and `point` are those of the straight line between the ends. With a radius, this point must
 /// lie within the disc; its distance is rounded.
 ///
-/// Throws InvalidArgument as check(), and where the numbers of positions do not match. Cost: linear, parallel. The same
+/// Throws InvalidArgument as check(), and if the numbers of positions do not match. Cost: linear, parallel. The same
 /// for any number of threads.
 std::vector<PlaneCrossing> find_crossings(std::span<const SectionPlane> planes, std::span<const Vec3> before,
                                           std::span<const Vec3> after, Threads threads = {});
@@ -116,9 +116,9 @@ struct ResidenceTimes {
 
   std::uint64_t count = 0;
   double sum = 0.0;    ///< s
-  double least = 0.0;  ///< s; 0 where there is none
+  double least = 0.0;  ///< s; 0 if there is none
   double most = 0.0;   ///< s
-  /// s: bin i counts times from i * bin to (i + 1) * bin. It is doubled where a time is beyond the last bin.
+  /// s: bin i counts times from i * bin to (i + 1) * bin. It is doubled if a time is beyond the last bin.
   double bin = 0.0;
   std::array<std::uint64_t, bin_count> bins{};
 
@@ -174,7 +174,7 @@ struct PathPoint {
   std::uint64_t id = 0;
   double time = 0.0;  ///< s
   Vec3 position;
-  /// At the ends of steps the particle's own. At a contact the mean velocity from the point before to this one; 0 where
+  /// At the ends of steps the particle's own. At a contact the mean velocity from the point before to this one; 0 if
   /// no time has passed.
   Vec3 velocity;
   bool contact = false;

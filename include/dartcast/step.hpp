@@ -21,7 +21,7 @@ struct TestCounts {
 
 /// Sums over particle-steps. Addition is in integers, so that the order of adding does not matter.
 ///
-/// Tests are counted where one process has all cells. Where ranks share the cells, `orientation`, `histogram`,
+/// Tests are counted if one process has all cells. If ranks share the cells, `orientation`, `histogram`,
 /// `forecast_kept` and `updated_by_deformation` are 0.
 struct Counters {
   static constexpr std::size_t histogram_size = 64;
@@ -35,7 +35,7 @@ struct Counters {
   std::uint64_t steps_split = 0;  ///< taken in several slices, because the vertices turned or stretched too much
   std::array<std::uint64_t, 3> contacts{};  ///< by kind: vertex, edge, face
   std::uint64_t unfinished =
-      0;  ///< stopped at the last contact allowed in a step, or where the way leads out of the exact range
+      0;  ///< stopped at the last contact allowed in a step, or if the way leads out of the exact range
 
   Counters& operator+=(const Counters& other) {
     particle_steps += other.particle_steps;
@@ -113,14 +113,14 @@ struct Crossing {
   /// Kind of the place: face, edge or vertex. `volume` (in the plane `face`) means that nothing is passed. Rounding put
   /// the particle into the next cell when it met a wall or when the mesh carried it. Then `point` is its position.
   Kind kind = Kind::face;
-  Dart dart;                   ///< of that face, edge or vertex, in `from`; invalid where there was no passage
+  Dart dart;                   ///< of that face, edge or vertex, in `from`; invalid if there was no passage
   std::uint32_t contacts = 0;  ///< number of the step's contacts before it
 };
 
 /// The path of a particle to one target. Its cell goes from `before` through each crossing to `after`.
 struct Trace {
   ParticleState before;
-  Forecast start;  ///< of `before`: the paper's kind and dart; not used where the particle is held
+  Forecast start;  ///< of `before`: the paper's kind and dart; not used if the particle is held
   std::vector<Crossing> crossings;
   ContactList contacts;  ///< by time
   ParticleState after;   ///< the bits that Environment::advance() gives

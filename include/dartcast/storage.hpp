@@ -17,7 +17,7 @@ namespace dartcast {
 // last element are readable, so that vector instructions may load more than they use.
 
 namespace detail {
-// The memory starts on a cache line. Large arrays lie on huge pages where the system has them. Without huge pages, most
+// The memory starts on a cache line. Large arrays lie on huge pages if the system has them. Without huge pages, most
 // of the time in a large scene is spent on page walks.
 void* allocate_aligned(std::size_t bytes);
 void deallocate_aligned(void* p, std::size_t bytes) noexcept;

@@ -51,7 +51,7 @@ struct AcrossEdge {
 /// A surface of convex faces in space, on which particles move.
 class Surface {
  public:
-  /// Takes the mesh as check_and_repair_surface() repairs it. Throws InvalidMesh, with the first faces, where that
+  /// Takes the mesh as check_and_repair_surface() repairs it. Throws InvalidMesh, with the first faces, if that
   /// finds a defect. Cost: n log n.
   explicit Surface(MeshData mesh);
 
@@ -60,13 +60,13 @@ class Surface {
   [[nodiscard]] std::span<const Vec3> positions() const { return positions_; }
 
   /// Sets new positions of all points, and carries the particles. Numbers that edits gave up can have any position.
-  /// Throws InvalidArgument where the number does not match, or a position is not finite or outside the exact range.
-  /// Throws InvalidMesh, which names the faces by their numbers in the mesh, where a face would have a triangle without
+  /// Throws InvalidArgument if the number does not match, or a position is not finite or outside the exact range.
+  /// Throws InvalidMesh, which names the faces by their numbers in the mesh, if a face would have a triangle without
   /// area. Then nothing is changed. Cost: linear.
   void move(std::span<const Vec3> positions, Threads threads = {});
 
   /// Frees or blocks a face, at once. Particles in a blocked face are held, and its edges to free faces are walls.
-  /// Throws InvalidArgument where there is no such face.
+  /// Throws InvalidArgument if there is no such face.
   void set_free(Cell face, bool free);
 
   /// All triangles, face by face.
@@ -86,7 +86,7 @@ class Surface {
   /// vertex's position.
   [[nodiscard]] Vec3 point(const SurfacePlace& place) const;
   /// A place by any weights that are finite, not negative and not all 0. The weights are scaled to sum to 1. Throws
-  /// InvalidArgument where they are not such weights, or where there is no such triangle.
+  /// InvalidArgument if they are not such weights, or if there is no such triangle.
   [[nodiscard]] SurfacePlace place(SimplexId triangle, const std::array<double, 3>& weights) const;
 
  private:
@@ -112,7 +112,7 @@ class SurfaceLocator {
   explicit SurfaceLocator(const Surface& surface);
 
   /// The nearest place, rounded, in free and blocked faces alike. If several places have equal distances, as doubles,
-  /// it is that in the lowest-numbered face of the mesh and its first triangle. Throws InvalidArgument where x is not
+  /// it is that in the lowest-numbered face of the mesh and its first triangle. Throws InvalidArgument if x is not
   /// finite or outside the exact range. Precondition: the surface is that for which the tree was made, not moved since.
   /// Cost: the triangles with boxes nearer than about twice the distance, times a logarithm.
   [[nodiscard]] SurfaceLocation nearest(const Surface& surface, const Vec3& x) const;
@@ -282,14 +282,14 @@ class SurfaceEdit {
   [[nodiscard]] const CombinatorialMap& map() const { return transaction_.map(); }
   /// The position of a vertex. A vertex that was put on an edge lies in its middle until it is placed. A vertex that
   /// was made by opening an edge lies where the old one lies. If two vertices were sewn to each other, the
-  /// lower-numbered one keeps its position. Throws InvalidArgument where there is no such vertex.
+  /// lower-numbered one keeps its position. Throws InvalidArgument if there is no such vertex.
   [[nodiscard]] Vec3 position(Vertex v);
-  /// Places a vertex that this edit made. Throws InvalidArgument where this edit made no such vertex, or x is not
+  /// Places a vertex that this edit made. Throws InvalidArgument if this edit made no such vertex, or x is not
   /// finite or outside the exact range.
   void place(Vertex v, const Vec3& x);
 
   /// Makes everything final. Afterwards every place must follow the edit (followed()), and moves give positions of the
-  /// new vertices, too. Throws EditRefused, everything undone, where a new face has a triangle without area. A face
+  /// new vertices, too. Throws EditRefused, everything undone, if a new face has a triangle without area. A face
   /// with a vertex on its edge has such a triangle, unless it is split there in the same edit.
   SurfaceEditReport commit();
 

@@ -56,8 +56,8 @@ std::string trajectory_csv(const CombinatorialMap& map, std::span<const Trace> t
 /// all of them. The size of the text depends on the cells passed, not on the scene. The longer side has 800
 /// pixels; positions are rounded to 1/100 of a pixel. The bytes are the same for any locale.
 ///
-/// `complex`: the one that the traces were made in, drawn as it stands. Throws InvalidArgument where there is no trace,
-/// or where the complex is not of the plane. Cost: one look at each cell of the scene.
+/// `complex`: the one that the traces were made in, drawn as it stands. Throws InvalidArgument if there is no trace,
+/// or if the complex is not of the plane. Cost: one look at each cell of the scene.
 std::string trajectory_svg(const CellComplex& complex, std::span<const Trace> traces);
 
 }  // namespace dartcast

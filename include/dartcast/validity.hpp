@@ -55,7 +55,7 @@ struct SimplexInversion {
   /// kinds from_the_start and undecidable it is 0, and that time is not safe.
   double safe_time = 0.0;
   InversionKind kind = InversionKind::line;
-  std::uint8_t one = 0;    ///< corners that meet the others, bit i for corner i; 0 where all lie on a line
+  std::uint8_t one = 0;    ///< corners that meet the others, bit i for corner i; 0 if all lie on a line
   std::uint8_t other = 0;  ///< not fewer than in `one`
 
   bool operator==(const SimplexInversion&) const = default;
@@ -67,9 +67,9 @@ struct SimplexInversion {
 /// `until` is in [0, 1]; it is rounded down to a multiple of inversion_resolution.
 ///
 /// The kind: a corner is counted to one of the parts if its facet's area along an axis is proved to keep its sign
-/// until the root. This is so where the area is above 2^-35 of the simplex's extents before and after. Otherwise the
+/// until the root. This is so if the area is above 2^-35 of the simplex's extents before and after. Otherwise the
 /// corner is counted to neither part. So the kinds from vertex_edge to line mean: this, or too close to it to
-/// distinguish. Coordinates outside the exact range may give undecidable even where the volume stays positive.
+/// distinguish. Coordinates outside the exact range may give undecidable even if the volume stays positive.
 ///
 /// Cost: about 20 ns if the filter proves the volume positive, and some 0.1 us if it must halve the step. If exact
 /// signs are needed, 2 to 5 us; if the simplex is inverted, 20 us.
@@ -94,8 +94,8 @@ struct CellInversion {
 /// valid, too. A simplex that is not positive at the start is inverted at the time 0. Steiner points move on straight
 /// lines like other vertices: positions are those of all vertices of the map. Exact as find_inversion().
 ///
-/// Throws InvalidArgument where the number of positions is not that of the map's vertices. Cost: linear, parallel, 20
-/// to 40 ns a simplex on one thread, about as much as check_validity(). It is more where very many simplices are
+/// Throws InvalidArgument if the number of positions is not that of the map's vertices. Cost: linear, parallel, 20
+/// to 40 ns a simplex on one thread, about as much as check_validity(). It is more if very many simplices are
 /// inverted within inversion_resolution of the first (4 us each). The result does not depend on the threads.
 std::optional<CellInversion> first_inversion(const CombinatorialMap& map, std::span<const Vec3> before,
                                              std::span<const Vec3> after, Threads threads = {});
@@ -113,7 +113,7 @@ std::optional<CellInversion> first_inversion(const CombinatorialMap& map, std::s
 /// tried, at increasing distances that start with inversion_resolution. The last one is 0, which gives `before` itself.
 /// Callers usually pass the safe_time of an inversion, or a part of it. Steiner points are computed from the weights.
 ///
-/// Preconditions: `before` is valid, `time` is in [0, 1], the spans do not overlap. Throws InvalidArgument where the
+/// Preconditions: `before` is valid, `time` is in [0, 1], the spans do not overlap. Throws InvalidArgument if the
 /// number of positions is not that of the map's vertices. Cost: a few passes of first_inversion().
 double move_towards(const CombinatorialMap& map, const SteinerWeights& steiner_weights, std::span<const Vec3> before,
                     std::span<const Vec3> after, double time, std::span<Vec3> positions, Threads threads = {});

@@ -61,11 +61,11 @@ class SampleTimes;
 /// A vector field on a complex: at points or in cells, steady or at several times.
 class VectorField {
  public:
-  /// A steady field at the points. The complex's positions are those at rest. Throws InvalidArgument where the number
+  /// A steady field at the points. The complex's positions are those at rest. Throws InvalidArgument if the number
   /// does not match, a value is not finite, or in the plane its z is not 0.
   VectorField(const CellComplex& complex, std::span<const Vec3> values, FieldFrame frame = FieldFrame::space);
   /// The complex has not been edited. Reads the first sample and stands at its time. Throws as above and as the samples'
-  /// read(), and where a time, the period or read is not as FieldSamples says.
+  /// read(), and if a time, the period or read is not as FieldSamples says.
   VectorField(const CellComplex& complex, FieldSamples samples, FieldFrame frame = FieldFrame::space);
 
   [[nodiscard]] FieldFrame frame() const { return frame_; }
@@ -76,16 +76,16 @@ class VectorField {
   /// Positions of all vertices at rest; empty in the frame of space.
   [[nodiscard]] std::span<const Vec3> rest() const { return rest_; }
 
-  /// Reads the samples that times from `begin` to `end` (s) need, and forgets all others: two or three where steps are
+  /// Reads the samples that times from `begin` to `end` (s) need, and forgets all others: two or three if steps are
   /// shorter than the samples' distances. Throws as the constructor, nothing changed.
   void hold(double begin, double end);
   /// Sets the values at these times, for at(). They are computed once for all particles: the cost is linear in the
-  /// points or cells, and nothing where the field is steady or stands at these times already. Samples that are not held
+  /// points or cells, and nothing if the field is steady or stands at these times already. Samples that are not held
   /// are read. `complex`: as it is now. The same bits for any number of threads.
   void set_times(std::span<const double> times, const CellComplex& complex, Threads threads = {});
 
   /// After an edit: new vertices take the values of those that they were made between, new cells those of the cells
-  /// that they were made from. `complex`: as it is now. Where the field is not steady, call set_times() before at().
+  /// that they were made from. `complex`: as it is now. If the field is not steady, call set_times() before at().
   void update_after_edit(const ComplexEditReport& edit, const CellComplex& complex);
 
   /// The vector at the point of barycentric coordinates w in a simplex with these corners now, at the `moment`-th of
@@ -107,7 +107,7 @@ class VectorField {
   FieldFrame frame_;
   std::size_t count_ = 0;  // of a sample's values
   bool plane_ = false;
-  std::map<std::size_t, std::vector<Vec3>> held_;  // by number of sample; where the field is steady: none
+  std::map<std::size_t, std::vector<Vec3>> held_;  // by number of sample; if the field is steady: none
   std::vector<double> times_;                      // those set; none after an edit
   std::vector<std::vector<Vec3>> values_;  // at these times; of all vertices, Steiner points included, or by row
   std::vector<std::uint32_t> row_;         // cells: the value of a source
