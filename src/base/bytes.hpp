@@ -40,7 +40,7 @@ class ByteWriter {
   std::string bytes_;
 };
 
-/// Every function throws Error where the bytes end too early.
+/// Every function throws Error if the bytes end too early.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}

@@ -14,7 +14,7 @@ DARTCAST_BEGIN_KERNEL
 namespace dartcast::detail::DARTCAST_SIMD {
 namespace {
 
-// Where the instruction set has no such register, the compiler takes two of half the size.
+// If the instruction set has no such register, the compiler takes two of half the size.
 using Double4 = double __attribute__((vector_size(32)));
 using Double2 = double __attribute__((vector_size(16)));
 using Float4 = float __attribute__((vector_size(16)));

@@ -105,7 +105,7 @@ class ExactSum {
     waiting_ = 1;
   }
 
-  // Precondition: carried, and not negative. 64 bits from the first one that is set, the last of them also set where any
+  // Precondition: carried, and not negative. 64 bits from the first one that is set, the last of them also set if any
   // lower one is: the conversion to double then rounds as the whole number would. A number below 2^-1022 has no bits to
   // round off.
   [[nodiscard]] double rounded() const {

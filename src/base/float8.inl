@@ -29,7 +29,7 @@ inline Mask8 lanes_with(Bits8 bits, unsigned i) {
   return (splat_int(static_cast<int>(bits)) & lane_bits(i)) == lane_bits(i);
 }
 
-// The signs of four vectors: set where negative, as all bits of a mask are.
+// The signs of four vectors: set if negative, as all bits of a mask are.
 #if defined(DARTCAST_AVX2)
 inline Bits8 negative_bits(const Mask8& a, const Mask8& b, const Mask8& c, const Mask8& d) {
   const __m256i ab = _mm256_packs_epi32(reinterpret_cast<__m256i>(a), reinterpret_cast<__m256i>(b));

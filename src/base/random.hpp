@@ -29,7 +29,7 @@ class Random {
   /// A multiple of 2^-53 in [0, 1).
   constexpr double uniform() { return static_cast<double>(next() >> 11U) * 0x1p-53; }
 
-  /// A number in [low, high); `high` itself where rounding leads there.
+  /// A number in [low, high); `high` itself if rounding leads there.
   constexpr double uniform(double low, double high) { return low + (high - low) * uniform(); }
 
   /// An integer in [0, n), n > 0; uniform to n / 2^32.

@@ -12,7 +12,7 @@
 namespace dartcast {
 
 /// The first rank adds those of all to its own, by rank, with add(sum, other), and all get the sum. pack(value) gives bytes,
-/// and unpack(bytes) the value. Collective, where there are several.
+/// and unpack(bytes) the value. Collective, if there are several.
 template <class T, class Add, class Pack, class Unpack>
 T reduced(Ranks* ranks, const T& own, Add&& add, Pack&& pack, Unpack&& unpack) {
   if (!are_several(ranks)) return own;

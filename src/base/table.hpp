@@ -65,7 +65,7 @@ class Table {
   /// Adds a row that pack() has written.
   void append(ByteReader& in);
   void pack(std::size_t row, ByteWriter& out) const;
-  /// Keeps the first `count` rows alone, also where an exception has ended an addition. It needs no memory.
+  /// Keeps the first `count` rows alone, also if an exception has ended an addition. It needs no memory.
   void truncate(std::size_t count);
   /// Removes rows that are marked with 1; the others keep their order. `marks`: one per row.
   void remove(std::span<const std::uint8_t> marks);

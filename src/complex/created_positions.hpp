@@ -29,7 +29,7 @@ class CreatedPositions {
     }
   }
 
-  /// Throws InvalidArgument where there is no such vertex.
+  /// Throws InvalidArgument if there is no such vertex.
   [[nodiscard]] Vec3 at(Vertex v) {
     if (count_ != transaction_.created_count() || positions_.size() != transaction_.map().vertex_count()) take();
     if (!transaction_.map().is_vertex(v))
@@ -37,7 +37,7 @@ class CreatedPositions {
     return positions_[v.value];
   }
 
-  /// Returns the number of the vertex among the new ones. Throws InvalidArgument where it is none of these, or x is not
+  /// Returns the number of the vertex among the new ones. Throws InvalidArgument if it is none of these, or x is not
   /// finite or outside the exact range.
   std::size_t place(Vertex v, const Vec3& x) {
     take();
@@ -61,7 +61,7 @@ class CreatedPositions {
     before_ = positions_.size();
     count_ = 0;
   }
-  /// Removes the new positions, where there is no commit.
+  /// Removes the new positions, if there is no commit.
   void give_up() { positions_.resize(before_); }
 
  private:

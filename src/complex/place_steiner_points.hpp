@@ -24,7 +24,7 @@ PlacedSteinerPoints place_steiner_points(Transaction& t, std::span<const Vec3> p
 
 /// The cells, of the given ones and of their neighbours at a face that needs a point, that would keep a simplex that is
 /// not positive; sorted. `keep_faces`: also those of which a face would get a point because it is bent. It may make
-/// vertices in the transaction, which the caller undoes. Cost: as above, but less where the mean of each cell's corners
+/// vertices in the transaction, which the caller undoes. Cost: as above, but less if the mean of each cell's corners
 /// sees all its faces.
 std::vector<Cell> cells_without_cone(Transaction& t, std::span<const Vec3> positions, std::span<const Cell> cells,
                                      bool keep_faces);

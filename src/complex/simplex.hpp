@@ -58,7 +58,7 @@ inline Vec3 facet_gradient(const PlaneCorners& v, unsigned facet) {
 template <std::size_t N>
 struct Determinants {
   std::array<double, N> value;
-  double bound;  ///< largest error of each value; infinite where the filter does not apply
+  double bound;  ///< largest error of each value; infinite if the filter does not apply
   Vec3 extent;   ///< of the differences
 
   Determinants(const std::array<Vec3, N>& v, const Vec3& x) {
@@ -122,7 +122,7 @@ struct Determinants {
 template <std::size_t N>
 Determinants(const std::array<Vec3, N>&, const Vec3&) -> Determinants<N>;
 
-/// Signs of some of the determinants. Bit i is set where det_i is negative, or where it is zero. If neither is set, it
+/// Signs of some of the determinants. Bit i is set if det_i is negative, or if it is zero. If neither is set, it
 /// is positive or undecidable.
 struct DeterminantSigns {
   unsigned negative = 0;

@@ -93,10 +93,10 @@ class ExactCubic {
 
   // Whether there is a root in (0, t], t = `units` time units. Precondition: starts_positive().
   //
-  // On [0, t] the coefficients are d0 = c0, d1, d2 and d3 = V(t). Where d0 and d3 are positive, roots in (0, t) are the
+  // On [0, t] the coefficients are d0 = c0, d1, d2 and d3 = V(t). If d0 and d3 are positive, roots in (0, t) are the
   // positive ones of d0 + d1 x + d2 x^2 + d3 x^3. With a negative discriminant this has one real root, which is
   // negative, since the product of all is -d0 / d3. Else all are real, and as many are positive as there are changes of
-  // sign (Descartes): two where d1 or d2 is negative, else none. The discriminant is that of the c times t^6.
+  // sign (Descartes): two if d1 or d2 is negative, else none. The discriminant is that of the c times t^6.
   [[nodiscard]] bool reaches_zero_by(std::int64_t units) const {
     const CubicInteger t = units;
     const CubicInteger s = whole - units;

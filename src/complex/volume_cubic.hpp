@@ -46,7 +46,7 @@ inline bool all_above(const std::array<double, 4>& b, double bound) {
 }
 
 /// Six times the volume is c0 s^3 + c1 s^2 t + c2 s t^2 + c3 t^3 with s = 1 - t, Bernstein's form without its factors
-/// of 3: positive in all of [0, 1] where all coefficients are.
+/// of 3: positive in all of [0, 1] if all coefficients are.
 struct VolumeCubic {
   std::array<double, 4> c;
   double m;      ///< product of the largest |x|, |y| and |z| among the edges from corner 0, before and after
@@ -99,7 +99,7 @@ struct VolumeRoot {
 };
 
 /// The first root of the volume in [0, until], without rounding. Precondition: `until` is a multiple of time_unit in
-/// [0, 1]. Cost: tens of microseconds. Callers use it where the filters above decide nothing.
+/// [0, 1]. Cost: tens of microseconds. Callers use it if the filters above decide nothing.
 VolumeRoot first_root(const Corners& before, const Corners& after, double until);
 
 }  // namespace dartcast::detail

@@ -22,7 +22,7 @@ Cutter::Cutter(ComplexEdit& edit, std::span<const Cell> cells) : edit_(edit), wo
   }
 }
 
-// A whole cell has a draft, too, where a cell beside it was split.
+// A whole cell has a draft, too, if a cell beside it was split.
 void Cutter::find_draft(std::uint32_t number) {
   Piece& piece = pieces_[number];
   if (piece.draft == DraftLink::no_draft && work_.taken(piece.cell)) piece.draft = work_.take(piece.cell);

@@ -15,7 +15,7 @@ namespace dartcast::detail {
 /// Cells, and parts of cells, by private numbers. The map keeps the whole cells until put().
 class Cutter {
  public:
-  /// Numbers the cells from 0. Throws InvalidArgument where there is no such cell, or it is named twice.
+  /// Numbers the cells from 0. Throws InvalidArgument if there is no such cell, or it is named twice.
   Cutter(ComplexEdit& edit, std::span<const Cell> cells);
 
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(pieces_.size()); }

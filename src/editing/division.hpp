@@ -28,7 +28,7 @@ struct Succession {
 
   /// The cells in the place of some. Those that nothing replaced are among them.
   [[nodiscard]] std::vector<Cell> now(std::span<const Cell> before) const;
-  /// The cell that this one is in the place of; the same where it replaced none.
+  /// The cell that this one is in the place of; the same if it replaced none.
   [[nodiscard]] Cell before(Cell now) const;
 };
 
@@ -45,7 +45,7 @@ struct CutAttempt {
   Effects effects;
   Succession succession;
   std::vector<Cell> whole;  ///< cells, as they were before the cut, that it could not split
-  bool keep_faces = false;  ///< bent faces must not move where only cells beside them change
+  bool keep_faces = false;  ///< bent faces must not move if only cells beside them change
 };
 
 /// Those of the cells that a division and a cut made, and around them, for which ComplexEdit::refused_cells() asks.

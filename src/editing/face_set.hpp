@@ -15,7 +15,7 @@ namespace dartcast::detail {
 /// A set of open faces, by their darts.
 class FaceSet {
  public:
-  /// Throws InvalidArgument where a face does not exist or is named twice, or there is none. Throws EditRefused where a
+  /// Throws InvalidArgument if a face does not exist or is named twice, or there is none. Throws EditRefused if a
   /// face is not open, or two share an edge in the same direction.
   FaceSet(const CombinatorialMap& map, std::span<const CellFace> faces);
 
@@ -26,7 +26,7 @@ class FaceSet {
   [[nodiscard]] Vertex to(Dart d) const { return map_.origin(map_.phi1(d)); }
   /// The dart of another face of the set along the same edge; invalid at the rim.
   [[nodiscard]] Dart across(Dart d) const { return find(to(d), from(d)); }
-  /// The darts at the rim, one after another. Throws EditRefused where they are not a simple loop.
+  /// The darts at the rim, one after another. Throws EditRefused if they are not a simple loop.
   [[nodiscard]] std::vector<Dart> rim() const;
 
  private:

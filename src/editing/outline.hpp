@@ -29,7 +29,7 @@ class Outline {
   };
 
   /// `positions`: of the cell's corners. If several vertices could be a middle, the nearest to it is taken. Throws
-  /// EditRefused where a side would have fewer than three corners. Cost: linear in the darts, on average.
+  /// EditRefused if a side would have fewer than three corners. Cost: linear in the darts, on average.
   Outline(const CombinatorialMap& map, Cell c, std::span<const Vec3> positions);
 
   [[nodiscard]] const std::vector<Side>& sides() const { return sides_; }

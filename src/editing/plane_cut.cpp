@@ -81,7 +81,7 @@ bool has_edge(const CellDraft& draft, Vertex u, Vertex v) {
 
 }  // namespace
 
-// Where an edge of a cell joins the two corners already, the face stays whole. So does the cell then.
+// If an edge of a cell joins the two corners already, the face stays whole. So does the cell then.
 void PlaneCut::split_faces(std::uint32_t number) {
   const std::size_t count = work_.draft(number).faces.size();
   for (std::uint16_t f = 0; f < count; ++f) {
@@ -129,7 +129,7 @@ std::uint32_t PlaneCut::split_cell(std::uint32_t number) {
 }
 
 // Chooses the faces of the part above: those with a corner above. A face in the plane belongs to it if it looks down,
-// because then the cell is above it. Returns false where a face has corners on both sides, or a part has too few faces.
+// because then the cell is above it. Returns false if a face has corners on both sides, or a part has too few faces.
 bool PlaneCut::choose_faces_above(const CellDraft& draft) {
   is_above_.clear();
   std::size_t count = 0;

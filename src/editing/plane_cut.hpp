@@ -20,7 +20,7 @@ class PlaneCut {
       : edit_(edit), work_(work), sides_(sides), plane_(plane) {}
 
   /// Splits cells that have corners on both sides. Returns the draft of each one's part above, or DraftLink::no_draft
-  /// where the cell stays whole. The part below keeps the draft. Cells around take the new vertices and edges.
+  /// if the cell stays whole. The part below keeps the draft. Cells around take the new vertices and edges.
   std::vector<std::uint32_t> split(std::span<const std::uint32_t> drafts);
 
  private:

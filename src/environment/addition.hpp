@@ -1,4 +1,4 @@
-// Undoes an addition of particles where an exception ends it, as that of memory. Not installed.
+// Undoes an addition of particles if an exception ends it, as that of memory. Not installed.
 #pragma once
 
 #include "dartcast/environment.hpp"

@@ -8,7 +8,7 @@
 
 namespace dartcast {
 
-/// The sum of the audits that the ranks have made of their own particles. Collective, where there are several.
+/// The sum of the audits that the ranks have made of their own particles. Collective, if there are several.
 inline Audit audit_of_all(Ranks* ranks, const Audit& own) {
   const auto add = [](Audit& sum, const Audit& other) { sum += other; };
   const auto pack = [](const Audit& a) {

@@ -1,4 +1,4 @@
-// Rays: particles that take one step, from their origins to the ends of their rays, and stop at the first wall. Where the
+// Rays: particles that take one step, from their origins to the ends of their rays, and stop at the first wall. If the
 // cells on the way are asked for, each ray walks once more, with a list.
 #include <fmt/format.h>
 

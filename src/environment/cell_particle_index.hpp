@@ -11,8 +11,8 @@
 
 namespace dartcast::detail {
 
-/// Lists of particles by cell. An entry may be out of date, where a particle has left since. A reader checks the
-/// particle's state. Such entries stay: most are soon out of date where particles follow many edits without a step.
+/// Lists of particles by cell. An entry may be out of date, if a particle has left since. A reader checks the
+/// particle's state. Such entries stay: most are soon out of date if particles follow many edits without a step.
 class CellParticleIndex {
  public:
   /// Cost: linear in the particles.

@@ -17,7 +17,7 @@ class BatchStepper;
 
 namespace dartcast {
 
-/// An environment of cells that were once valid, in positions that they have come to: corners may turn inwards where all
+/// An environment of cells that were once valid, in positions that they have come to: corners may turn inwards if all
 /// simplices are positive. Throws InvalidMesh as Environment's constructor for all other defects.
 std::unique_ptr<Environment> environment_as_it_is(const MeshData& mesh);
 

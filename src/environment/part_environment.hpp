@@ -40,8 +40,8 @@ struct TrafficCounts {
 /// One rank's part. Its functions are collective.
 class PartEnvironment {
  public:
-  /// `environment`: made of the part's mesh. All outlive it. Throws InvalidMesh where the ranks' parts are not of one mesh:
-  /// a ghost is not, corner by corner, a cell of the rank that should have it. Throws InvalidArgument in the plane, and where
+  /// `environment`: made of the part's mesh. All outlive it. Throws InvalidMesh if the ranks' parts are not of one mesh:
+  /// a ghost is not, corner by corner, a cell of the rank that should have it. Throws InvalidArgument in the plane, and if
   /// cells need Steiner points.
   PartEnvironment(Environment& environment, const MeshPart& part, Ranks& ranks);
 
@@ -53,7 +53,7 @@ class PartEnvironment {
   [[nodiscard]] const TrafficCounts& traffic() const { return traffic_; }  ///< so far
 
   /// As Environment::add(), with the same positions on all ranks. The one that has the cell as its own adds the particle, and
-  /// it alone gets its index; all get its place. Throws as that, nothing added, and InvalidArgument where a cell is not valid.
+  /// it alone gets its index; all get its place. Throws as that, nothing added, and InvalidArgument if a cell is not valid.
   std::vector<AddResult> add(Particles& particles, std::span<const Vec3> positions);
 
   /// Environment::advance() over all parts, to the same bits, for points in space. Particles must be in own cells; they

@@ -89,7 +89,7 @@ class EditFollower {
   }
 
   // The new position of a particle whose simplex was removed. The vertices of the simplex still have their positions:
-  // their numbers are used again by the next edit at the earliest. The result lies exactly in the moved simplex where
+  // their numbers are used again by the next edit at the earliest. The result lies exactly in the moved simplex if
   // that is positive.
   template <std::size_t N>
   [[nodiscard]] Vec3 carried(std::size_t i) const {
@@ -217,7 +217,7 @@ class EditFollower {
     return true;
   }
 
-  // Where rounding put a held particle beside its simplex, it is put back.
+  // If rounding put a held particle beside its simplex, it is put back.
   void release(std::uint32_t i) {
     ParticleState& s = states_[i];
     const Corners corners = complex_.corners(s.at());

@@ -20,7 +20,7 @@ struct BoxWindow {
 };
 
 /// Cells and patch faces of these cubes, and their points, each in the order of the whole. Precondition: the window is in
-/// the box; where it is not all of it, nothing is mixed or blocked at random. Throws as generate_box().
+/// the box; if it is not all of it, nothing is mixed or blocked at random. Throws as generate_box().
 MeshData generate_box_window(const BoxOptions& options, const BoxWindow& window);
 
 /// The number in a box that is not mixed.

@@ -155,7 +155,7 @@ class BoxBuilder {
     }
   }
 
-  // One mark per cube; empty where nothing is to be blocked.
+  // One mark per cube; empty if nothing is to be blocked.
   [[nodiscard]] std::vector<std::uint8_t> blocked_cubes() const {
     std::vector<std::uint8_t> blocked;
     if (!o_.blocked_layer && o_.blocked_share == 0.0) return blocked;

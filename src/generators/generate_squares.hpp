@@ -8,7 +8,7 @@
 
 namespace dartcast {
 
-/// generate_rectangle() with the squares to block given: one mark each, x fastest, or none where all are free.
+/// generate_rectangle() with the squares to block given: one mark each, x fastest, or none if all are free.
 /// Preconditions: options that check_squares() takes, and no blocked_share.
 MeshData generate_squares(const RectangleOptions& options, std::span<const std::uint8_t> blocked);
 

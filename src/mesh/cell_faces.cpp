@@ -52,7 +52,7 @@ std::uint32_t after_edge(const CellFaces& faces, std::uint32_t a, std::uint32_t 
 }
 
 /// The corners of a standard cell in the order of MeshData: the base from the first face of its size, then the points
-/// above. None where the faces are not those of such a cell.
+/// above. None if the faces are not those of such a cell.
 std::optional<std::array<std::uint32_t, 8>> standard_corners(const CellFaces& faces, CellType type) {
   const std::size_t n = corner_count(type);
   const std::size_t in_base = type == CellType::tetrahedron || type == CellType::prism ? 3 : 4;

@@ -33,7 +33,7 @@ class CellFaces {
   std::vector<std::size_t> begin_ = {0};
 };
 
-/// Adds a tetrahedron, hexahedron, prism or pyramid where the faces are those of one, else a polyhedron.
+/// Adds a tetrahedron, hexahedron, prism or pyramid if the faces are those of one, else a polyhedron.
 void add_cell(const CellFaces& faces, MeshData& mesh);
 
 }  // namespace dartcast

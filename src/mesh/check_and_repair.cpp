@@ -1,4 +1,4 @@
-// Checks a mesh step by step, repairs it where the repair is certain, and reports the rest.
+// Checks a mesh step by step, repairs it if the repair is certain, and reports the rest.
 #include <algorithm>
 
 #include "dartcast/mesh_check.hpp"

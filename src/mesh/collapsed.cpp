@@ -43,7 +43,7 @@ bool is_closed(const CellFaces& faces) {
   return std::all_of(edges.begin(), edges.end(), [&](const auto& e) { return edges.contains({e.second, e.first}); });
 }
 
-/// Adds cell c of the mesh without its repeated corners. Whether that is a cell; of a standard type, where c is of one.
+/// Adds cell c of the mesh without its repeated corners. Whether that is a cell; of a standard type, if c is of one.
 bool add_collapsed(const MeshData& mesh, std::size_t c, MeshData& to) {
   if (dimension(mesh.types[c]) == 2) {
     const CornerList corners = without_repeats(mesh.cell(c));

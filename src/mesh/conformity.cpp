@@ -60,7 +60,7 @@ bool separates(const MeshData& mesh, const FaceTriangle& s, const FaceTriangle& 
 }
 
 /// Whether the insides of two triangles, seen along `axis`, have a point in common. Two convex polygons have none
-/// exactly where an edge of one has the other on its far side.
+/// exactly if an edge of one has the other on its far side.
 bool areas_overlap(const MeshData& mesh, const FaceTriangle& s, const FaceTriangle& t, int axis) {
   const auto turn = [&](const FaceTriangle& x) {
     return orient2d(drop(mesh.points[x[0]], axis), drop(mesh.points[x[1]], axis), drop(mesh.points[x[2]], axis));

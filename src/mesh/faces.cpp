@@ -16,7 +16,7 @@ constexpr std::uint32_t no_corner = 0xffffffffU;
 
 /// A face by its four smallest corners, for sorting.
 struct FaceKey {
-  std::array<std::uint32_t, 4> corners;  // ascending; `no_corner` where the face has fewer
+  std::array<std::uint32_t, 4> corners;  // ascending; `no_corner` if the face has fewer
   std::uint32_t cell;
   std::uint32_t place;         // from the cell's start in connectivity for a polyhedron; else the face's number
   std::uint32_t size : 16;     // at most polyhedron_limit

@@ -77,7 +77,7 @@ class Cells {
 
 }  // namespace
 
-// The union of two strictly convex cells is strictly convex where it is so at both ends of their common edge. Then
+// The union of two strictly convex cells is strictly convex if it is so at both ends of their common edge. Then
 // all triangles of corners are positive, for a fan from any corner. Angles at corners only grow, so one look at each
 // edge is enough.
 std::vector<std::uint32_t> merge_convex(const PlanarTriangulation& triangles, std::span<const Vec3> points,

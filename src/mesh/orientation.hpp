@@ -18,7 +18,7 @@ enum class Orientation {
 /// a polyhedron those of its faces seen from its two extreme corners. A cell that is positive here may still have a
 /// corner that is turned in: whether it can be cut into positive simplices is tested in complex/. In the plane a cell
 /// must be weakly convex: no corner turns the other way, and its edges go around once; corners may be straight, but no
-/// edge may have both ends at one place. Such a cell is mirrored where it runs clockwise. Preconditions:
+/// edge may have both ends at one place. Such a cell is mirrored if it runs clockwise. Preconditions:
 /// connectivity is well formed, polyhedra are closed with consistent faces, coordinates in the exact range.
 Orientation orient_cell(MeshData& mesh, std::size_t c);
 

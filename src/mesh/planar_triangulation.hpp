@@ -36,7 +36,7 @@ class PlanarTriangulation {
   /// than 2^28. They are not copied.
   explicit PlanarTriangulation(std::span<const Vec3> points);
 
-  /// Makes the segment from a to b an edge that is never flipped again, with a name (not `none`). Where that cannot be,
+  /// Makes the segment from a to b an edge that is never flipped again, with a name (not `none`). If that cannot be,
   /// says why and changes nothing. Cost: the edges it crosses, and about the edges of a. Preconditions: a and b
   /// differ, and are no corners of the rectangle; no other segment has the same ends.
   std::optional<Obstacle> insert_segment(std::uint32_t a, std::uint32_t b, std::uint32_t name);

@@ -20,7 +20,7 @@ constexpr Vec2 drop(const Vec3& p, int axis) {
   return {p.x, p.y};
 }
 
-/// Positive where a, b, c turn counterclockwise. The two products decide where their rounding (each difference, product
+/// Positive if a, b, c turn counterclockwise. The two products decide if their rounding (each difference, product
 /// and the sum: less than 2^-50 of them together) cannot matter and none came near the smallest double.
 inline Sign orient2d(const Vec2& a, const Vec2& b, const Vec2& c) {
   const double ux = b.x - a.x;

@@ -23,7 +23,7 @@ bool has_size(const DataArray& array, std::size_t items) {
          array.values.size() % array.components == 0;
 }
 
-/// Calls visit(point) for each corner of cell c; false where the cell's stream of numbers is not well formed.
+/// Calls visit(point) for each corner of cell c; false if the cell's stream of numbers is not well formed.
 template <class Visit>
 bool visit_corners(const MeshData& mesh, std::size_t c, Visit&& visit) {
   const auto cell = mesh.cell(c);

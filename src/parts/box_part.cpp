@@ -92,7 +92,7 @@ void for_each_place(const CubePlace& low, const CubePlace& high, Visit&& visit) 
   }
 }
 
-// Lattice points first, then the cubes' middles, where they are cut from these.
+// Lattice points first, then the cubes' middles, if they are cut from these.
 void number_points(const BoxOptions& o, const BoxWindow& w, MeshPart& part) {
   const CubePlace n = {o.cells[0] + 1, o.cells[1] + 1, o.cells[2] + 1};
   for_each_place(w.low, {w.high[0] + 1, w.high[1] + 1, w.high[2] + 1},

@@ -27,7 +27,7 @@ class PartCells {
 
   // Cells that are invalid stay so.
   [[nodiscard]] Cell whole(Cell c) const { return c.valid() ? entry(c).whole : c; }
-  /// Invalid where the rank does not have it.
+  /// Invalid if the rank does not have it.
   [[nodiscard]] Cell here(Cell whole) const;
   [[nodiscard]] SimplexId whole(SimplexId s) const { return {whole(s.cell), s.simplex}; }
   [[nodiscard]] SimplexId here(SimplexId s) const { return {here(s.cell), s.simplex}; }

@@ -65,7 +65,7 @@ inline DoubleDouble square_root(const DoubleDouble& a) {
 }
 inline double square_root(double a) { return std::sqrt(a); }
 
-/// a - b, exactly where Real is DoubleDouble.
+/// a - b, exactly if Real is DoubleDouble.
 template <class Real>
 Real exact_difference(double a, double b) {
   if constexpr (requires(Real r) { r.low; })

@@ -1,6 +1,6 @@
 // The filter of moving pairs, in doubles with proved bounds.
 //
-// Phases: an axis that separates; the cubic of the volume, where it has one sign; else [0, 1] is halved, the earlier part
+// Phases: an axis that separates; the cubic of the volume, if it has one sign; else [0, 1] is halved, the earlier part
 // first. Forms are kept as Bernstein's coefficients. A part is
 // - free, if the volume has one sign; or if in some projection two minors of a vertex and a face have opposite signs
 //   throughout, or both ends of an edge lie on one side of the other edge. Both hold for flat triangles and parallel
@@ -218,7 +218,7 @@ class PairFilter {
   }
 
   // Any root in the part is a touch: the volume alone decides where the first one is. It is not before `start`, and a
-  // root is before `crossed`, where the volume has proved the other sign.
+  // root is before `crossed`, if the volume has proved the other sign.
   [[nodiscard]] FilteredTouch narrowed(const TimePart<N>& part) const {
     CubicCoefficients volume = part.volume;
     double start = part.start;

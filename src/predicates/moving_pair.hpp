@@ -26,14 +26,14 @@ struct MovingPair {
 };
 
 /// The time of the first touch in [0, 1], or nothing. It is never late, and at most 2^-20 early. Costs some 50 to 200 ns
-/// where the filter decides, some 70 us elsewhere.
+/// if the filter decides, some 70 us elsewhere.
 std::optional<double> first_touch(const MovingPair& pair, PairKind kind);
 
 enum class FilterAnswer : std::uint8_t { apart, touching, undecided };
 
 struct FilteredTouch {
   FilterAnswer answer = FilterAnswer::undecided;
-  double time = 0.0;  ///< The first touch, never late, at most 2^-20 early. Defined where the answer is `touching`.
+  double time = 0.0;  ///< The first touch, never late, at most 2^-20 early. Defined if the answer is `touching`.
 };
 
 /// The part in doubles.

@@ -107,7 +107,7 @@ TwoTerms paired_product(double a, const TwoTerms& b) {
   return {p.high, p.low + a * b.low};
 }
 
-// The determinant as a double-double, where differences round nothing. It is off by less than 2^-97 m, where m is the
+// The determinant as a double-double, if differences round nothing. It is off by less than 2^-97 m, where m is the
 // product of the extents. A minor of v and w is off by 3 2^-106 of the sum of its products' magnitudes. Each of the
 // three products with u is off by 3 2^-106 of itself more, and their sum by 24 2^-106 of all. In all this is less than
 // 2^-101 of the permanent, which is at most 6 m. Within the exact range nothing under- or overflows.

@@ -53,7 +53,7 @@ class WallSubset {
   std::size_t count_ = 0;
 };
 
-// The unit vector of the plane of both normals that is perpendicular to the first; zero where they are the same.
+// The unit vector of the plane of both normals that is perpendicular to the first; zero if they are the same.
 Vec3 beside(const Vec3& first, const Vec3& second) {
   const Vec3 raw = across_normal(second, first);
   const double length = norm(raw);
@@ -72,7 +72,7 @@ HeldBack held_by(const Vec3& v, const WallHit& wall, double into) {
   return held;
 }
 
-// One wall alone holds v back, where the others let it.
+// One wall alone holds v back, if the others let it.
 bool hold_by_one(const Vec3& v, const WallSubset& walls, double limit, HeldBack& held) {
   for (std::size_t i = 0; i < walls.size(); ++i) {
     const double into = -dot(v, walls[i].normal);
@@ -95,7 +95,7 @@ bool leads_there(const Vec3& v, HeldBack& held) {
   return std::isfinite(sum) && norm(reached - held.velocity) <= rounding_share * sum;
 }
 
-// Along the crease of two that push it there, where the others let it.
+// Along the crease of two that push it there, if the others let it.
 bool hold_by_two(const Vec3& v, const WallSubset& walls, double limit, HeldBack& held) {
   for (std::size_t i = 0; i < walls.size(); ++i) {
     const Vec3& n = walls[i].normal;
@@ -113,7 +113,7 @@ bool hold_by_two(const Vec3& v, const WallSubset& walls, double limit, HeldBack&
   return false;
 }
 
-// Three walls take all of v. Where rounding finds none that do, it ends without.
+// Three walls take all of v. If rounding finds none that do, it ends without.
 void hold_by_three(const Vec3& v, const WallSubset& walls, HeldBack& held) {
   for (std::size_t i = 0; i < walls.size(); ++i) {
     for (std::size_t j = i + 1; j < walls.size(); ++j) {

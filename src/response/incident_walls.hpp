@@ -34,7 +34,7 @@ class JointWalls {
   std::span<const WallHit> joined_;
 };
 
-/// A vector counts as pointing into no wall where it does so by at most this share of the length of the vector that
+/// A vector counts as pointing into no wall if it does so by at most this share of the length of the vector that
 /// the walls were given. A projection meets the walls that it was made on up to some ten roundings of 2^-53 (normals
 /// are of length 1 up to four of them, and creases are made orthogonal twice); 2^-46 is 128 of them. A vector
 /// that exceeds it is never returned, so that the share bounds every result. No decision of a walk depends on it.
@@ -52,7 +52,7 @@ struct HeldBack {
 };
 
 /// The velocity nearest to v that points into none of the walls, up to rounding_share of v: v's projection onto the
-/// cone of such velocities. Where rounding finds none it is 0. Precondition: normals are of length 1. Cost: linear in
+/// cone of such velocities. If rounding finds none it is 0. Precondition: normals are of length 1. Cost: linear in
 /// the number of walls, most often once or twice.
 HeldBack held_back(const Vec3& v, const JointWalls& walls);
 
@@ -63,7 +63,7 @@ struct WallSurface {
 };
 
 /// `velocity`, or less of it: shortened so that |velocity + lead|^2 - |lead|^2 is at most `limit`, as it is computed;
-/// to the least value on the line where that is still more. Without a lead its square is never more than `limit`.
+/// to the least value on the line if that is still more. Without a lead its square is never more than `limit`.
 Vec3 shortened(const Vec3& velocity, double limit, const Vec3& lead);
 
 namespace detail {
@@ -105,7 +105,7 @@ Vec3 after_impact(const Vec3& v, const JointWalls& walls, const SurfaceOf& surfa
     back += normal * (surface.restitution * held.impulse[i]);
     lost += surface.friction * (1.0 + surface.restitution) * held.impulse[i];
   }
-  // Where walls with different responses face each other, some may give more than all of them took together.
+  // If walls with different responses face each other, some may give more than all of them took together.
   if (held.count > 1) {
     const double limit = norm(held.velocity - v);
     const double given = norm(back);
@@ -118,7 +118,7 @@ Vec3 after_impact(const Vec3& v, const JointWalls& walls, const SurfaceOf& surfa
 }
 
 /// The velocity after impacts on all walls at once, one after the other until v points into none: one may point it into
-/// another wall. Where they do not end soon, v is held back. The result points into no wall by more than rounding_share
+/// another wall. If they do not end soon, v is held back. The result points into no wall by more than rounding_share
 /// of v, and its energy is not above that of v, as for after_impact().
 template <class SurfaceOf>
 Vec3 rebounded(const Vec3& v, const JointWalls& walls, const SurfaceOf& surface_of, const Vec3& lead = {}) {

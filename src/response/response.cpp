@@ -112,7 +112,7 @@ struct LibraryResponse {
     return rebounded(v, walls, surface_of, lead);
   }
 
-  // Where accelerated, the way left is that of the velocity; else it may be of another making, and is reflected itself.
+  // If accelerated, the way left is that of the velocity; else it may be of another making, and is reflected itself.
   [[nodiscard]] AfterContact reflect(const Contact& contact, std::span<const WallHit> walls,
                                      std::span<const WallHit> earlier) const {
     const JointWalls met(walls, contact.last ? earlier : earlier.last(contact.together));

@@ -1,4 +1,4 @@
-// Polygons in space as triangles, also where they are not convex.
+// Polygons in space as triangles, also if they are not convex.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ Vec3 vector_area(std::span<const Vec3> points, std::span<const std::uint32_t> co
 
 /// Triangles with the corners of a polygon, in its sense of rotation, by cutting off ears. Seen along the axis nearest to
 /// its normal the triangles do not overlap, by exact signs, if the polygon does not cross itself as seen from there.
-/// Where it does, the result is a fan. Cost: the square of the corners. Precondition: at least three corners.
+/// If it does, the result is a fan. Cost: the square of the corners. Precondition: at least three corners.
 std::vector<TriangleCorners> ears(std::span<const Vec3> points, std::span<const std::uint32_t> corners);
 
 /// Whether the triangles run counterclockwise, as ears() sees the polygon: then those of a fan, or of ears(), do not

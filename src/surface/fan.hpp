@@ -23,7 +23,7 @@ struct Fan {
   std::vector<FanCorner> corners;
   bool closed = true;
   double total = 0.0;   ///< sum of the angles
-  std::size_t own = 0;  ///< the index of the given triangle's corner; 0 where closed
+  std::size_t own = 0;  ///< the index of the given triangle's corner; 0 if closed
   double before = 0.0;  ///< sum of those before it
 
   /// The corner that contains an angle from the fan's first edge, and the rest of the angle there, in [0, its angle].

@@ -22,7 +22,7 @@ std::vector<Box> boxes_of(const std::vector<Vec3>& points, const std::vector<Sur
 
 Sign compare(double a, double b) { return a < b ? Sign::negative : a > b ? Sign::positive : Sign::zero; }
 
-// Sign of orient2d(a, b, x + (e, e^2)): the first of its terms that is not 0. Zero only where a and b are above each
+// Sign of orient2d(a, b, x + (e, e^2)): the first of its terms that is not 0. Zero only if a and b are above each
 // other.
 Sign shifted_side(const Vec3& a, const Vec3& b, const Vec3& x) {
   const Sign s = orient2d(a, b, x);
@@ -41,7 +41,7 @@ Vec3 without(const Vec3& p, int axis) {
   return axis == 0 ? Vec3{p.y, p.z, 0.0} : axis == 1 ? Vec3{p.z, p.x, 0.0} : Vec3{p.x, p.y, 0.0};
 }
 
-// Whether x, a point of the triangle's plane, is in the closed triangle. Decided in a projection where the triangle
+// Whether x, a point of the triangle's plane, is in the closed triangle. Decided in a projection if the triangle
 // has an area.
 bool holds_in_plane(const std::array<Vec3, 3>& t, const Vec3& x) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -97,7 +97,7 @@ PointSide InsideTest::side(const Vec3& point) const {
     if (!crossed && !near) return true;
     const Sign above = orient3d(t[0], t[1], t[2], x);
     on = near && above == Sign::zero && holds_in_plane(t, x);
-    // Counterclockwise from above, x is above the triangle where the determinant is positive.
+    // Counterclockwise from above, x is above the triangle if the determinant is positive.
     const Sign turn = shifted_side(t[0], t[1], x);
     if (crossed && above == -turn) ++layers;
     return !on;

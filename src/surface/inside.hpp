@@ -15,7 +15,7 @@ enum class PointSide : std::uint8_t { inside, outside, on };
 /// layers encloses is inside. So a shell within another is a cavity, for any orientation.
 ///
 /// Every answer comes from exact signs. The upward ray starts at x + (e, e^2, 0) with e infinitesimal: it meets no
-/// edge and no corner. Where it starts on a triangle, x is on that triangle. (H. Edelsbrunner, E. P. Muecke,
+/// edge and no corner. If it starts on a triangle, x is on that triangle. (H. Edelsbrunner, E. P. Muecke,
 /// "Simulation of simplicity", 1990.)
 class InsideTest {
  public:
@@ -24,7 +24,7 @@ class InsideTest {
   /// Preconditions: each edge has an even number of triangles; there are triangles.
   InsideTest(std::vector<Vec3> points, std::vector<SurfaceTriangle> triangles);
 
-  /// Throws InvalidArgument where the point is not finite or outside the exact range. Cost: the triangles whose boxes
+  /// Throws InvalidArgument if the point is not finite or outside the exact range. Cost: the triangles whose boxes
   /// the ray meets, times a logarithm.
   [[nodiscard]] PointSide side(const Vec3& point) const;
 

@@ -13,11 +13,11 @@ namespace dartcast {
 using SurfaceTriangle = std::array<std::uint32_t, 3>;
 
 /// The triangles of a surface's faces, oriented alike across edges. Each face gives a fan from its lowest-numbered
-/// corner, and one that is not convex the triangles of ears(). Throws InvalidMesh, with the kind of the first defect and its first face, where check_and_repair_surface()
+/// corner, and one that is not convex the triangles of ears(). Throws InvalidMesh, with the kind of the first defect and its first face, if check_and_repair_surface()
 /// refuses the surface. Cost: n log n.
 std::vector<SurfaceTriangle> surface_triangles(const MeshData& surface);
 
-/// Throws InvalidMesh, which names an edge, where a triangle has no neighbour across one of its edges. Such a surface
+/// Throws InvalidMesh, which names an edge, if a triangle has no neighbour across one of its edges. Such a surface
 /// is open and has no inside. Precondition: no edge has more than two triangles. Cost: n log n.
 void check_closed(const std::vector<SurfaceTriangle>& triangles);
 

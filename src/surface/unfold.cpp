@@ -73,7 +73,7 @@ double determinant(double a, double b, double c, double d) {
   return orient2d_value({}, {a, b, 0.0}, {c, d, 0.0});
 }
 
-// Leaves by edge i, where the remaining part of weight j is known: it is accurate to rounding of itself.
+// Leaves by edge i, if the remaining part of weight j is known: it is accurate to rounding of itself.
 Exit by_edge(const TriangleWeights& from, const Rates& r, unsigned i, unsigned j, double left) {
   const unsigned k = 3 - i - j;
   Exit exit;

@@ -1,4 +1,4 @@
-// Memory that starts on a cache line, on huge pages where it is large.
+// Memory that starts on a cache line, on huge pages if it is large.
 #include <cstdint>
 #include <new>
 

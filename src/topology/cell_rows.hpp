@@ -32,7 +32,7 @@ class CellEntry {
   CellEntry() = default;
   /// Precondition: `face` is below 6, and `triangle` below 2.
   CellEntry(unsigned face, unsigned triangle) : bits_(4 * face + 32 * triangle) {}
-  /// Beyond a way out. `face`: as the cell there numbers it, and below 8. Where that cell is no hexahedron, only the
+  /// Beyond a way out. `face`: as the cell there numbers it, and below 8. If that cell is no hexahedron, only the
   /// triangle counts.
   CellEntry(unsigned face, const CellWay& way) : bits_(4 * face + way.beyond) {}
 
@@ -55,7 +55,7 @@ struct alignas(64) CellRow {
   std::array<CellWay, 10> ways{};
 };
 
-/// Those of one shape. Empty where it is no hexahedron.
+/// Those of one shape. Empty if it is no hexahedron.
 class CellRows {
  public:
   CellRows() = default;

@@ -16,7 +16,7 @@ namespace {
 
 bool is_polygon(const ShapeKey& key) { return !key.faces.empty() && key.faces.front().corners.size() == 2; }
 
-// Throws where the edges are not one cycle of distinct corners in their order.
+// Throws if the edges are not one cycle of distinct corners in their order.
 void check_polygon(const ShapeKey& key) {
   std::vector<bool> seen(key.corner_count);
   for (std::size_t f = 0; f < key.faces.size(); ++f) {
@@ -31,7 +31,7 @@ void check_polygon(const ShapeKey& key) {
   if (key.faces.size() < 3) throw InvalidMesh("the cell has fewer than three corners");
 }
 
-// Throws where a face is not a cycle of distinct corners, a number names no corner, or there are too many darts.
+// Throws if a face is not a cycle of distinct corners, a number names no corner, or there are too many darts.
 void check_key(const ShapeKey& key) {
   if (is_polygon(key)) check_polygon(key);
   std::size_t darts = 0;

@@ -1,4 +1,4 @@
-// The edits of dartcast/map_edits.hpp where cells are polygons.
+// The edits of dartcast/map_edits.hpp if cells are polygons.
 #include "topology/edit_plane.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The edits of dartcast/map_edits.hpp where cells are polygons. The functions there call them, and check the darts
+// The edits of dartcast/map_edits.hpp if cells are polygons. The functions there call them, and check the darts
 // before.
 #pragma once
 

@@ -9,7 +9,7 @@
 
 namespace dartcast::detail {
 
-/// Numbers by key. Open addressing: half the places stay empty. It grows where there are more keys than announced.
+/// Numbers by key. Open addressing: half the places stay empty. It grows if there are more keys than announced.
 class KeyTable {
  public:
   static constexpr std::uint32_t none = 0xffffffffU;

@@ -33,7 +33,7 @@ struct Replacement {
 ///  - that face belongs to another cell and is sewn to no other face. It is a face of a draft, or a face of a cell that
 ///    stays, which is open now or sewn to a removed cell.
 ///
-/// Throws InvalidArgument where a cell does not exist or is named twice. Throws EditRefused where the result would not
+/// Throws InvalidArgument if a cell does not exist or is named twice. Throws EditRefused if the result would not
 /// be a map. Cost: n log n in the darts of the drafts and of the removed cells.
 Replacement plan_replacement(const CombinatorialMap& map, std::span<const Cell> removed,
                              std::span<const CellDraft> drafts);

@@ -57,25 +57,25 @@ inline std::size_t corner_of(const Shape& s, std::uint16_t dart) {
   throw EditRefused("cell " + std::to_string(map.source(c)) + " " + reason);
 }
 
-/// Throws InvalidArgument where there is no such cell.
+/// Throws InvalidArgument if there is no such cell.
 inline void expect_cell(const CombinatorialMap& map, Cell c) {
   if (!map.contains(c)) throw InvalidArgument("there is no such cell: an earlier edit replaced it; look it up anew");
 }
 
-/// Throws InvalidArgument where the map is planar. `what`: the action, such as "cuts".
+/// Throws InvalidArgument if the map is planar. `what`: the action, such as "cuts".
 inline void expect_space(const CombinatorialMap& map, const char* what) {
   if (map.dimension() == 2)
     throw InvalidArgument(std::string(what) +
                           " need cells of space: in the plane, edit the map (dartcast/map_edits.hpp)");
 }
 
-/// Throws InvalidArgument where there is no such dart.
+/// Throws InvalidArgument if there is no such dart.
 inline void expect_dart(const CombinatorialMap& map, Dart d) {
   if (!map.contains(d.cell) || d.number >= map.shape(d.cell).dart_count())
     throw InvalidArgument("there is no such dart: an earlier edit replaced its cell; find it anew by its vertices");
 }
 
-/// Throws InvalidArgument where there is no such face.
+/// Throws InvalidArgument if there is no such face.
 inline void expect_face(const CombinatorialMap& map, CellFace f) {
   if (!map.contains(f.cell) || f.face >= map.shape(f.cell).face_count())
     throw InvalidArgument("there is no such face: an earlier edit replaced its cell; find it anew by its vertices");

@@ -39,7 +39,7 @@ inline Vec3 combine(const Corners& v, const Weights& w) {
 }
 inline Vec3 combine(const PlaneCorners& v, const Weights& w) { return (v[0] * w[0] + v[1] * w[1]) + v[2] * w[2]; }
 
-/// The particle with coordinates w, in the moved simplex; placed in the simplex where rounding put it outside.
+/// The particle with coordinates w, in the moved simplex; placed in the simplex if rounding put it outside.
 /// Precondition: the moved simplex is positive.
 template <class Positions, std::size_t N>
 SimplexPlacement carried(const Space<Positions, N>& space, SimplexId simplex, const Weights& w) {

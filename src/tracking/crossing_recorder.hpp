@@ -54,7 +54,7 @@ class CrossingRecorder {
     const std::span<const Left> passed = std::span<const Left>(left_).first(left_.size() - (to_wall ? 1 : 0));
     std::size_t first = 0;
     for (std::size_t i = 0; i < passed.size(); ++i) first = is_wall(passed[i]) ? i + 1 : first;
-    // A walk passes a wall only where p lies on it: there it started again, in another simplex around p.
+    // A walk passes a wall only if p lies on it: there it started again, in another simplex around p.
     if (first > 0) turn<N>(space, first < left_.size() ? left_[first].simplex : w.simplex, p, begin);
     for (const Left& left : passed.subspan(first)) pass<N>(space, left, p, q, begin, end);
   }
@@ -104,7 +104,7 @@ class CrossingRecorder {
     unsigned zeros = 1U << left.facet;
     for (unsigned i = 0; i < N - 1; ++i) zeros |= weights[i] == 0.0 ? 1U << facet_corner<N>(left.facet, i) : 0U;
     Shape::Feature feature = come_to<N>(left.simplex, zeros);
-    // Two faces may hold the same three corners, where the one in the middle is on their common edge.
+    // Two faces may hold the same three corners, if the one in the middle is on their common edge.
     if (feature.kind == Kind::face) feature.dart = cell.shape().first_dart(across.face());
     const double height = orient_facet_value(v, left.facet, p);
     const double fraction = std::clamp(height / (height - orient_facet_value(v, left.facet, q)), 0.0, 1.0);

@@ -28,7 +28,7 @@ std::uint32_t bin_along(double x, double low, double high, std::uint32_t bins) {
   return std::min(bins - 1, static_cast<std::uint32_t>(std::min(at, 4e9)));
 }
 
-// The first simplex of the cell whose corners are such that holds(corners); invalid where none is.
+// The first simplex of the cell whose corners are such that holds(corners); invalid if none is.
 template <class Holds>
 SimplexId find_in(const CellComplex& complex, Cell c, Holds&& holds) {
   const CellView cell = complex.map().view(c);

@@ -22,9 +22,9 @@ class Locator {
   /// finite and in the exact range. Cost: the cells whose boxes share x's grid bin.
   [[nodiscard]] Location locate(const CellComplex& complex, const Vec3& x) const;
 
-  /// The simplex alone, where all cells of the grid are known to be valid; invalid outside.
+  /// The simplex alone, if all cells of the grid are known to be valid; invalid outside.
   [[nodiscard]] SimplexId find(const CellComplex& complex, const Vec3& x) const;
-  /// The same, for a simplex that also holds the start of the way from x to `inner`. Where x lies on a wall between two
+  /// The same, for a simplex that also holds the start of the way from x to `inner`. If x lies on a wall between two
   /// simplices, this is the one on the side of `inner`.
   [[nodiscard]] SimplexId find(const CellComplex& complex, const Vec3& x, const Vec3& inner) const;
 

@@ -15,7 +15,7 @@ struct NearestFree {
 };
 
 /// Searches outwards from the cells given, always from the nearest cell reached, to the first free cell. It is the
-/// nearest one if it can be reached over cells that are no farther. Nothing where there is none. Cells with a simplex
+/// nearest one if it can be reached over cells that are no farther. Nothing if there is none. Cells with a simplex
 /// that is not positive are passed through. The place is exactly in its closed simplex; distances are rounded. `start`:
 /// cells next to x; the one that holds x, if one does, comes first. Precondition: x is in the exact range. Cost: the
 /// cells nearer than the place found.

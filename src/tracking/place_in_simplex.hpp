@@ -74,7 +74,7 @@ inline Vec3 scaled_to_one(const Vec3& x) {
   return largest > 0.0 && largest <= std::numeric_limits<double>::max() ? x * std::ldexp(1.0, -std::ilogb(largest)) : x;
 }
 
-/// Zero where the vector is zero or not finite.
+/// Zero if the vector is zero or not finite.
 inline Vec3 unit_of(const Vec3& x) {
   const Vec3 scaled = scaled_to_one(x);
   const double square = dot(scaled, scaled);
@@ -101,7 +101,7 @@ inline Vec3 unusual_normal(const Corners& v, unsigned facet) {
 
 }  // namespace detail
 
-/// A facet's unit normal to the inside; 0 where it has no area, or a corner outside the exact range.
+/// A facet's unit normal to the inside; 0 if it has no area, or a corner outside the exact range.
 inline Vec3 facet_normal(const Corners& v, unsigned facet) {
   const auto& f = facet_corners[facet];
   const Vec3 b = v[f[1]] - v[f[0]];
@@ -166,7 +166,7 @@ inline bool on_level_facet(const PlaneCorners& v, unsigned facet, const Vec3& x)
 
 /// For the usual contact point: x is on one facet, which lies across an axis, or next to one facet. In the second case
 /// x is lifted off the facet by as little as the filter needs (some tens of units in the last place of the simplex'
-/// size). Nothing where the filter proves too little, or would need more than 256 units of the coordinates.
+/// size). Nothing if the filter proves too little, or would need more than 256 units of the coordinates.
 template <std::size_t N>
 std::optional<Vec3> proved_inside(const std::array<Vec3, N>& v, const Vec3& x) {
   Determinants d(v, x);
@@ -214,7 +214,7 @@ inline bool is_rounded_off(const Vec3& corner, const Vec3& x) {
 inline Vec3 mean_of(const Corners& v) { return ((v[0] + v[1]) + (v[2] + v[3])) * 0.25; }
 inline Vec3 mean_of(const PlaneCorners& v) { return (v[0] + v[1] + v[2]) * (1.0 / 3.0); }
 
-/// Lifts x off the facets of the simplex; nothing where it is not inside then. p shows how large the rounding is.
+/// Lifts x off the facets of the simplex; nothing if it is not inside then. p shows how large the rounding is.
 template <std::size_t N>
 std::optional<Vec3> lifted_inside(const std::array<Vec3, N>& v, const Vec3& p, Vec3 x) {
   WallPlanes<N> facets;
@@ -225,7 +225,7 @@ std::optional<Vec3> lifted_inside(const std::array<Vec3, N>& v, const Vec3& p, V
   return x;
 }
 
-/// Walks from p to x; nothing where x is not reached.
+/// Walks from p to x; nothing if x is not reached.
 template <class Positions, std::size_t N>
 std::optional<SimplexPlacement> reached(const Space<Positions, N>& space, SimplexId start, const Vec3& p,
                                         const Vec3& x) {
@@ -236,7 +236,7 @@ std::optional<SimplexPlacement> reached(const Space<Positions, N>& space, Simple
   return {};
 }
 
-/// Lifts x off the walls in the way from p, one unit in the last place at first, doubling; nothing where that fails.
+/// Lifts x off the walls in the way from p, one unit in the last place at first, doubling; nothing if that fails.
 template <class Positions, std::size_t N>
 std::optional<SimplexPlacement> lifted(const Space<Positions, N>& space, SimplexId start, const Vec3& p, Vec3 x) {
   WallPlanes<N> planes;
@@ -259,9 +259,9 @@ std::optional<SimplexPlacement> lifted(const Space<Positions, N>& space, Simplex
 /// Puts x, a point rounded out of the closed simplex `simplex` (with corners v), into a free closed simplex. These are
 /// tried in order:
 /// 1. Lift x off the facets that it is behind, one unit in the last place at first, doubling.
-/// 2. Walk to x from a point p of the simplex, and lift x off the walls in the way. p is the mean of the corners where
+/// 2. Walk to x from a point p of the simplex, and lift x off the walls in the way. p is the mean of the corners if
 ///    that is exactly inside, else the corner nearest to x.
-/// 3. Where the walls are too close together for that, search a double between them
+/// 3. If the walls are too close together for that, search a double between them
 ///    (tracking/representable_point.hpp).
 /// 4. Take p or the corner nearest to x.
 /// No wall is passed. Precondition: the simplex is positive, its cell free.

@@ -161,7 +161,7 @@ class LatticeBasis {
  private:
   [[nodiscard]] double share(const Effect& e, unsigned k) const { return dot(e, own_[k]) / dot(own_[k], own_[k]); }
 
-  // Subtracts multiples of the steps before from step k; false where there is nothing to subtract.
+  // Subtracts multiples of the steps before from step k; false if there is nothing to subtract.
   template <class EffectOf>
   bool shorten(unsigned k, const EffectOf& effect_of) {
     bool shortened = false;
@@ -191,7 +191,7 @@ class LatticeBasis {
 };
 
 /// A double close to the point with coordinates `room`, at most about `distance` away; none of the coordinates is lost
-/// where one is found as close as the room allows.
+/// if one is found as close as the room allows.
 template <std::size_t N>
 Vec3 representable_near(const Coordinates<N>& coordinates, const std::array<double, N>& room, double distance) {
   const Vec3 middle = coordinates.place(room);
@@ -222,7 +222,7 @@ Vec3 representable_near(const Coordinates<N>& coordinates, const std::array<doub
   return flushed(found);
 }
 
-/// A double in the closed simplex close to x, a point at most a few units in the last place outside; nothing where none
+/// A double in the closed simplex close to x, a point at most a few units in the last place outside; nothing if none
 /// is found, as may be in a simplex thinner than a unit in the last place. At an edge of a small angle a, the distance
 /// is of the order of a^(-1/3) units, which is optimal. Cost: some 10 us for each doubling of
 /// the distance. Precondition: the simplex is positive.
@@ -233,7 +233,7 @@ std::optional<Vec3> representable_inside(const std::array<Vec3, N>& v, const Vec
   double size = 0.0;
   for (const Vec3& corner : v) size = std::max(size, norm(corner - x));
   for (int k = std::numeric_limits<double>::digits; k > 0; --k) {
-    const double drawn = std::ldexp(1.0, -k);  // towards the simplex's mean, where there is more room
+    const double drawn = std::ldexp(1.0, -k);  // towards the simplex's mean, if there is more room
     std::array<double, N> room;
     for (unsigned i = 0; i < N; ++i) room[i] = (1.0 - drawn) * next[i] + drawn * (1.0 / N);
     for (int turn = 0; turn < 3; ++turn) room = coordinates.centred(room);

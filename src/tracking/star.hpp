@@ -21,14 +21,14 @@ struct Feature {
   unsigned count = 0;
 
   void add(Vertex v) { vertex[count++] = v; }
-  /// Adds it where `held`. Without a branch, which would mispredict.
+  /// Adds it if `held`. Without a branch, which would mispredict.
   void add_if(bool held, Vertex v) {
     vertex[count] = v;
     count += held ? 1U : 0U;
   }
 };
 
-/// Bit i is set where the facet opposite to corner i holds the feature.
+/// Bit i is set if the facet opposite to corner i holds the feature.
 template <std::size_t N = 4>
 unsigned facets_holding(const Feature& feature, const CellView& cell, const ImplicitSimplex& s) {
   std::array<Vertex, N> corner;
@@ -88,7 +88,7 @@ class FoundSimplex {
   static constexpr unsigned slot_bits = 7;
 
   std::array<std::uint64_t, 64> near_;               // the first count_
-  std::array<std::uint8_t, 1U << slot_bits> place_;  // hash table: one more than the place in near_, 0 where empty
+  std::array<std::uint8_t, 1U << slot_bits> place_;  // hash table: one more than the place in near_, 0 if empty
   std::size_t count_ = 0;
   bool hashes_ = false;  // most often nothing need be looked for
   std::optional<Far> far_;
@@ -103,10 +103,10 @@ constexpr std::uint16_t number_of(std::uint64_t code) { return static_cast<std::
 // would mispredict.
 class FewCells {
  public:
-  /// Returns false where there is no room.
+  /// Returns false if there is no room.
   bool add(Cell c) {
     if (count_ == limit) return false;
-    // Written as a whole: the processor could not load the four yet where one of them was just written.
+    // Written as a whole: the processor could not load the four yet if one of them was just written.
     Four& four = cells_[count_ / 4];
     const std::uint32_t lane = count_ % 4;
     four = lane == 0 ? all(c.value) : (Four{0, 1, 2, 3} == all(lane)) ? all(c.value) : four;
@@ -126,7 +126,7 @@ class FewCells {
 
   static constexpr std::uint32_t limit = 16;
 
-  std::array<Four, limit / 4> cells_;  // in the last four the first one again where there are not as many
+  std::array<Four, limit / 4> cells_;  // in the last four the first one again if there are not as many
   std::uint32_t count_ = 0;
 };
 
@@ -221,7 +221,7 @@ struct SimplexFacet {
 };
 
 /// A wall facet that holds `feature`, spanned by the corners of a simplex that have no bit set in `zeros`; nothing
-/// where search_walls() finds none from there. Cost: constant inside a face, else linear in the star. Precondition: 1
+/// if search_walls() finds none from there. Cost: constant inside a face, else linear in the star. Precondition: 1
 /// to N - 1 bits are set.
 template <std::size_t N = 4>
 std::optional<SimplexFacet> find_wall(const CombinatorialMap& map, SimplexId simplex, unsigned zeros,

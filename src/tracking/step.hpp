@@ -58,7 +58,7 @@ class Stepper {
                    ContactList& contacts, std::vector<Crossing>& crossings) const;
 
  private:
-  // run() where nothing responds, and the step's end is known.
+  // run() if nothing responds, and the step's end is known.
   void stop_at_impact(StepState& step, const SteppedParticle& particle) const;
 
   StepSetting setting_;

@@ -4,7 +4,7 @@
 // The stages, in order (StepRun::run()):
 // 1. start: a particle whose simplex is not positive, before or after the mesh has moved, is held. A step among vertices
 //    that have moved may be taken in several time slices.
-// 2. carry, where the mesh has moved: each slice begins with the vertices, which carry the particle along.
+// 2. carry, if the mesh has moved: each slice begins with the vertices, which carry the particle along.
 // 3. walk: to the target of the slice, up to a wall. Batches (in_batch) and other ranks (on_way) begin walks, too.
 // 4. contact: describe it, put the particle there, ask for an answer, aim at the new target, and walk again.
 // 5. done: count.
@@ -94,7 +94,7 @@ class StepRun {
     count();
   }
 
-  // The same where the step stops at the impact that a batch has computed: its end is known.
+  // The same if the step stops at the impact that a batch has computed: its end is known.
   [[gnu::always_inline]] void stop_at_impact() {
     aim_in_batch();
     const Vec3 way = s_.slice_target - s_.walk_start;
@@ -181,7 +181,7 @@ class StepRun {
 
   // --- carry
 
-  // Each slice is walked in the geometry at its end. Returns false where the step waits or leaves.
+  // Each slice is walked in the geometry at its end. Returns false if the step waits or leaves.
   bool take_slices() {
     while (true) {
       const Space<Between, N> to = between(time_of_slice(s_.slice));
@@ -217,7 +217,7 @@ class StepRun {
     s_.stage = StepStage::walk;
   }
 
-  // The particle takes no step, and is carried along. It is held where its simplex is not positive at the end of the
+  // The particle takes no step, and is carried along. It is held if its simplex is not positive at the end of the
   // move, or its cell is blocked. Otherwise only its way leads through an invalid cell, and it is free again at once.
   void hold(const Weights& weights) {
     weights_ = weights;
@@ -240,7 +240,7 @@ class StepRun {
 
   // --- walk
 
-  // To the target of the slice, with the contacts on the way. Returns false where the step waits or leaves.
+  // To the target of the slice, with the contacts on the way. Returns false if the step waits or leaves.
   template <class Positions>
   bool walk(const Space<Positions, N>& space) {
     while (s_.slice_target != state_.position) {
@@ -274,7 +274,7 @@ class StepRun {
     return true;
   }
 
-  // Returns false where it leaves.
+  // Returns false if it leaves.
   template <class Positions>
   [[gnu::always_inline]] bool walk_to_end(const Space<Positions, N>& space, const Vec3& p, const Vec3& q, Walk& w) {
     if constexpr (Driver::travels)
@@ -298,7 +298,7 @@ class StepRun {
 
   // --- contact
 
-  // Records the contact, and puts the particle there. `impact`: where a batch has computed it.
+  // Records the contact, and puts the particle there. `impact`: if a batch has computed it.
   template <class Positions>
   Contact& meet(const Space<Positions, N>& space, const Walk& w, const Vec3& p, const Vec3& q,
                 const WallImpact* impact) {
@@ -366,7 +366,7 @@ class StepRun {
   }
 
   // The contact point is rounded, so that it may lie outside the simplex at the wall: the particle is put near by,
-  // inside it. Where that is farther from the point than p is, the particle stays at p, in the simplex where the
+  // inside it. If that is farther from the point than p is, the particle stays at p, in the simplex where the
   // segment starts.
   template <class Positions>
   void place(const Space<Positions, N>& space, const Walk& w, const Simplex& corners, const Vec3& p,
@@ -382,7 +382,7 @@ class StepRun {
     state_.put(placed.simplex, placed.position);
   }
 
-  // Where the filter proves nothing: at a corner that is within rounding of x; else where place_in_simplex() puts x, or
+  // If the filter proves nothing: at a corner that is within rounding of x; else where place_in_simplex() puts x, or
   // at a corner that is nearer.
   template <class Positions>
   static SimplexPlacement next_to(const Space<Positions, N>& space, SimplexId simplex, const Simplex& v,
@@ -477,7 +477,7 @@ class StepRun {
   Driver& driver_;
 };
 
-// Takes walls back that were put in front of a contact, where the step has had none.
+// Takes walls back that were put in front of a contact, if the step has had none.
 class EarlierWalls {
  public:
   explicit EarlierWalls(ContactList& list) : list_(list) {}

@@ -38,7 +38,7 @@ enum class StepStage : std::uint8_t {
   done
 };
 
-/// A step between its stages. The rest of its state is in the particle and, where it waits, in the contact.
+/// A step between its stages. The rest of its state is in the particle and, if it waits, in the contact.
 struct StepState {
   StepStage stage = StepStage::start;
   SimplexId start;  ///< where the step started
@@ -54,7 +54,7 @@ struct StepState {
 
   // Found by a batch.
   Vec3 walk_start;                   ///< where it begins: the particle's place, carried along with the mesh
-  std::optional<WallImpact> impact;  ///< at the walk's end, where it has been computed
+  std::optional<WallImpact> impact;  ///< at the walk's end, if it has been computed
   bool left_behind = false;          ///< there: the vertices leave behind the place where the step started
   bool carried_on = false;  ///< there, in several slices: a particle that stops has that position at the step's end
 

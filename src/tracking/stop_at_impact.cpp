@@ -1,4 +1,4 @@
-// The end of a step that stops at its first wall, where the batch has computed the impact: at most steps to far targets. In
+// The end of a step that stops at its first wall, if the batch has computed the impact: at most steps to far targets. In
 // a file of its own, because there g++ 12 inlines all of it.
 #include "tracking/step.hpp"
 #include "tracking/step_run.hpp"

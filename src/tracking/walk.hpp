@@ -33,7 +33,7 @@ enum class WalkEnd : std::uint8_t {
 struct Walk {
   WalkEnd end = WalkEnd::arrived;
   SimplexId simplex;       ///< the last one reached
-  std::uint8_t zeros = 0;  ///< arrived, or ends on a wall: bit i is set where q lies on the facet opposite to corner i
+  std::uint8_t zeros = 0;  ///< arrived, or ends on a wall: bit i is set if q lies on the facet opposite to corner i
   SimplexId wall_simplex;  ///< wall: the free simplex at the wall, and which of its facets is the wall
   std::uint8_t wall_facet = 0;
   bool at_start = false;  ///< wall: met at p itself
@@ -47,14 +47,14 @@ struct NoVisitor {
 
 namespace detail {
 
-// (k, l) such that (i, j, k, l) is an even permutation: orient3d(v_k, v_l, p, q) > 0 where the segment leaves by i
+// (k, l) such that (i, j, k, l) is an even permutation: orient3d(v_k, v_l, p, q) > 0 if the segment leaves by i
 // before j.
 inline constexpr std::uint8_t side_edge[4][4][2] = {{{0, 0}, {2, 3}, {3, 1}, {1, 2}},
                                                     {{3, 2}, {0, 0}, {0, 3}, {2, 0}},
                                                     {{1, 3}, {3, 0}, {0, 0}, {0, 1}},
                                                     {{2, 1}, {0, 2}, {1, 0}, {0, 0}}};
 
-/// Bit i is set where x lies on the facet opposite to corner i.
+/// Bit i is set if x lies on the facet opposite to corner i.
 template <std::size_t N>
 unsigned zeros_of(const std::array<Vec3, N>& v, const Vec3& x) {
   constexpr unsigned all = (1U << N) - 1U;
@@ -70,7 +70,7 @@ unsigned zeros_of(const std::array<Vec3, N>& v, const Vec3& x) {
 template <class Positions, std::size_t N>
 class Ties {
  public:
-  /// `zeros`: the facets of `start` that p lies on, where they are known.
+  /// `zeros`: the facets of `start` that p lies on, if they are known.
   Ties(const Space<Positions, N>& space, SimplexId start, const Vec3& p, const Vec3& q,
        std::optional<unsigned> zeros = {})
       : space_(space), start_(start), p_(p), q_(q), zeros_(zeros) {}
@@ -80,12 +80,12 @@ class Ties {
     shift_.emplace(p, opposite);
   }
 
-  /// Sign of orient3d(a, b, p, q) of the shifted segment, where it is zero.
+  /// Sign of orient3d(a, b, p, q) of the shifted segment, if it is zero.
   [[nodiscard]] Sign line(const Vec3& a, const Vec3& b) {
     if (!shift_) make_perturbation();
     return shift_->of_line(a, b, q_);
   }
-  /// Sign of orient2d(p, q, c) of the shifted segment, where it is zero.
+  /// Sign of orient2d(p, q, c) of the shifted segment, if it is zero.
   [[nodiscard]] Sign line() {
     if (!shift_) make_perturbation();
     return shift_->of_line(q_);
@@ -226,7 +226,7 @@ SimplexId simplex_towards(const Space<Positions, N>& space, SimplexId at, const 
   return found;
 }
 
-/// Walls are closed: where q lies exactly on one, the walk ends at it.
+/// Walls are closed: if q lies exactly on one, the walk ends at it.
 template <std::size_t N>
 void find_wall_at_end(const CombinatorialMap& map, Walk& walk) {
   const CellView cell = map.view(walk.simplex.cell);
@@ -240,7 +240,7 @@ void find_wall_at_end(const CombinatorialMap& map, Walk& walk) {
 }
 
 /// Ends a walk that has come to its first wall, or to the closed simplex that holds q. `restarted`: it has begun anew, from
-/// a wall that p lies on. Where `leaves(walk, start)` holds, it is returned as it is; start: of a walk that begins anew here,
+/// a wall that p lies on. If `leaves(walk, start)` holds, it is returned as it is; start: of a walk that begins anew here,
 /// else null. always_inline: g++ 12 would call it from both.
 template <class Positions, std::size_t N, class Visitor, class Leaves>
 [[gnu::always_inline]] inline Walk end_walk(const Space<Positions, N>& space, Walk walk, bool restarted, const Vec3& p,
@@ -262,7 +262,7 @@ template <class Positions, std::size_t N, class Visitor, class Leaves>
   return walk;
 }
 
-/// The same where all cells are known.
+/// The same if all cells are known.
 template <class Positions, std::size_t N, class Visitor = NoVisitor>
 Walk end_walk(const Space<Positions, N>& space, const Walk& walk, const Vec3& p, const Vec3& q, TestCounts& counts,
               Visitor&& visit = {}) {
@@ -273,7 +273,7 @@ Walk end_walk(const Space<Positions, N>& space, const Walk& walk, const Vec3& p,
 
 /// Walks from p to q. Preconditions: p lies in the closed simplex `start` of a free cell; p and q are finite and in the
 /// exact range; p differs from q. Cost: three or four orientation tests in each simplex met, whatever the size of the
-/// scene; in the plane two or three. Throws InternalError with a replay where a walk among valid cells does not end
+/// scene; in the plane two or three. Throws InternalError with a replay if a walk among valid cells does not end
 /// (guarantee G4: a bug).
 template <class Positions, std::size_t N, class Visitor = NoVisitor>
 Walk walk(const Space<Positions, N>& space, SimplexId start, const Vec3& p, const Vec3& q, TestCounts& counts,
