@@ -32,7 +32,7 @@ void add_up(std::vector<std::pair<std::uint32_t, double>>& weights) {
 
 }  // namespace
 
-// Adds a body's surface, where it has room.
+// Adds a body's surface, if it has room.
 SolidPlacement Bodies::Impl::add_surface(const SolidMesh& mesh) {
   if (!surfaces_.set) surfaces_.set = std::make_unique<SolidSet>(environment_);
   return surfaces_.set->add(mesh);
@@ -55,8 +55,8 @@ std::span<const Vec3> Bodies::Impl::surface(std::size_t body) const {
   return surfaces_.set->positions().subspan(first[s], first[s + 1] - first[s]);
 }
 
-// Where particles at these places carry all surfaces. A surface stays where none of them moves (from `from`, if that is not
-// empty), or where it would leave the range of numbers.
+// Where particles at these places carry all surfaces. A surface stays if none of them moves (from `from`, if that is not
+// empty), or if it would leave the range of numbers.
 std::vector<Vec3> Bodies::Impl::surface_targets(std::vector<Vec3>& places, std::span<const Vec3> from) const {
   const auto now = surfaces_.set->positions();
   std::vector<Vec3> targets(now.begin(), now.end());

@@ -8,7 +8,7 @@
 
 namespace dartcast {
 
-// Sets for each body whether its energy covers the positions of its particles, with new fits. Where new fits cost more
+// Sets for each body whether its energy covers the positions of its particles, with new fits. If new fits cost more
 // than the body has, and are not those of least energy, the last fits count.
 void Bodies::Impl::measure() {
   for_each_body([&](Body& body) {
@@ -77,7 +77,7 @@ void Bodies::Impl::accept(Body& body) {
   std::copy(fresh.begin(), fresh.end(), of(body, goals_).begin());
 }
 
-// Cuts velocities to the energy that the body has. Where it met no wall, it cuts those relative to the rigid motion
+// Cuts velocities to the energy that the body has. If it met no wall, it cuts those relative to the rigid motion
 // alone, if that suffices up to the slack: then momentum and angular momentum stay.
 void Bodies::Impl::limit_energy(Body& body) {
   const double has = kinetic(body);
@@ -108,7 +108,7 @@ bool Bodies::Impl::lacks_motion(const Body& body) {
   return rigid.kinetic_energy() > allowed + energy_slack * body.budget;
 }
 
-// Cuts bodies that touch, and meet no wall, as one body where one of them lacks energy for its rigid motion. Velocities
+// Cuts bodies that touch, and meet no wall, as one body if one of them lacks energy for its rigid motion. Velocities
 // relative to the rigid motion of all of them fall, so that momentum and angular momentum stay.
 void Bodies::Impl::limit_energy_together() {
   if (std::none_of(bodies_.begin(), bodies_.end(), [](const Body& b) { return b.collided; })) return;

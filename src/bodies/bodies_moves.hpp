@@ -7,8 +7,8 @@
 namespace dartcast {
 
 struct BodiesMoves {
-  /// The surfaces of the bodies are a partner of the next joint move; null where there are none. Throws as
-  /// Bodies::move_with() where they missed a move or an edit.
+  /// The surfaces of the bodies are a partner of the next joint move; null if there are none. Throws as
+  /// Bodies::move_with() if they missed a move or an edit.
   static MovePartner* prepare(Bodies& bodies);
 };
 

@@ -21,7 +21,7 @@ namespace dartcast {
 //  8. accept(), limit_energy()   new fits; velocities that the energy does not cover are cut (bodies_energy.cpp)
 //  9. aim_pull(), advance()  the second pass: particles go towards their goals; answer_pull() answers at walls
 // 10. fit(), damp(), limit_energy()   new fits, damping, and the limits of energy once more
-// 11. move_surfaces()        surfaces follow; where they meet walls, particles give way (bodies_edges.cpp)
+// 11. move_surfaces()        surfaces follow; if they meet walls, particles give way (bodies_edges.cpp)
 // 12. remove_gone(), find_pairs()   bodies that left; pairs that may touch in the next step
 const BodiesStep& Bodies::Impl::step() {
   check_surfaces("bodies");
@@ -65,7 +65,7 @@ void Bodies::Impl::first_pass() {
   const std::vector<ParticleStatus> statuses = fates_;
   last_.motion = advance(false);
   measure();
-  // Energy always covers limited targets of a body that touches no other. Where bodies that collide still lack it,
+  // Energy always covers limited targets of a body that touches no other. If bodies that collide still lack it,
   // the last try leaves the collision out.
   for (const bool collides : {true, false}) {
     if (std::all_of(bodies_.begin(), bodies_.end(), [](const Body& b) { return b.pays; })) return;

@@ -10,7 +10,7 @@ namespace dartcast {
 
 namespace {
 
-// A particle rests on the wall, and does not bounce, where the acceleration of so many steps explains its speed.
+// A particle rests on the wall, and does not bounce, if the acceleration of so many steps explains its speed.
 constexpr double resting_steps = 2.0;
 
 bool enters(const Vec3& v, std::span<const WallHit> walls) {

@@ -21,7 +21,7 @@ struct Leg {
   Vec3 after;            ///< velocity at the end of the step, if no wall is met
   Vec3 early;            ///< acceleration at the start of the step
   Vec3 late;             ///< at its end, as predicted
-  double kinetic = 0.0;  ///< limit of the energy per mass in `from`, where targets are limited
+  double kinetic = 0.0;  ///< limit of the energy per mass in `from`, if targets are limited
   double begin = 0.0;    ///< time of `from`, as a share of the step
   bool pushed = false;   ///< it met a moving wall, or was held
 };

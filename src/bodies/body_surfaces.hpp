@@ -12,7 +12,7 @@
 
 namespace dartcast {
 
-/// A set of solids that can be copied. Empty where no body has a surface.
+/// A set of solids that can be copied. Empty if no body has a surface.
 struct BodySurfaces {
   std::unique_ptr<SolidSet> set;
 

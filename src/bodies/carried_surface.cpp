@@ -75,7 +75,7 @@ double product(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 // Makes the columns orthonormal, left to right, each twice (W. Kahan, B. N. Parlett: twice is enough), and solves R' z
-// = (1, 0, 0, 0) for the factor R. Returns nothing where a column depends on those before it, to rounding.
+// = (1, 0, 0, 0) for the factor R. Returns nothing if a column depends on those before it, to rounding.
 std::optional<std::array<double, 4>> orthonormalized(Columns& q) {
   std::array<double, 4> z{};
   for (std::size_t j = 0; j < 4; ++j) {
@@ -96,7 +96,7 @@ std::optional<std::array<double, 4>> orthonormalized(Columns& q) {
 }
 
 // Affine weights of x over some samples: sum w = 1 and sum w p = x, with the least sum of (w / theta)^2 for a bell
-// theta around x. Empty where the samples lie in a plane.
+// theta around x. Empty if the samples lie in a plane.
 std::vector<double> affine_weights(const Vec3& x, std::span<const Vec3> samples, std::span<const std::uint32_t> near) {
   double far = 0.0;
   for (const std::uint32_t i : near) far = std::max(far, norm(samples[i] - x));

@@ -18,13 +18,13 @@ class CarriedSurface {
  public:
   /// Vertices and samples at rest. Each vertex takes `neighbours` of its nearest samples (4 at least). It doubles their
   /// number until an error of a sample is amplified at most 8 times, or there are no more samples.
-  /// Throws InvalidArgument where something is not finite, there are fewer than 4 samples, or all of them lie in one
+  /// Throws InvalidArgument if something is not finite, there are fewer than 4 samples, or all of them lie in one
   /// plane (to 2^-20 of their extent). Then sample the volume, too. Cost: n log n.
   CarriedSurface(std::span<const Vec3> vertices, std::span<const Vec3> samples, std::size_t neighbours = 12);
 
   /// The vertices for these positions of the samples. An affine map of all samples maps all vertices in the same way,
   /// to rounding. Samples at rest give vertices at rest, likewise. The same bits for any number of
-  /// threads. Throws InvalidArgument where a number does not match. Cost: 5 ns per neighbour.
+  /// threads. Throws InvalidArgument if a number does not match. Cost: 5 ns per neighbour.
   void positions(std::span<const Vec3> samples, std::span<Vec3> vertices, Threads threads = {}) const;
 
   /// Calls visit(sample, weight) for each sample that a vertex follows. The weights sum to 1.

@@ -27,7 +27,7 @@ struct Symmetric {
 // and of the minors, of at most some 50 products of three, is less than 2^-44.
 constexpr double minor_share = 0x1p-20;
 
-// Solves H w = t by Cholesky's method; nothing where H is not positive definite.
+// Solves H w = t by Cholesky's method; nothing if H is not positive definite.
 std::optional<Vec3> solve_positive(const Symmetric& h, const Vec3& t, double lowest) {
   if (!(h.xx > lowest)) return std::nullopt;
   const double lyx = h.xy / h.xx;
@@ -70,7 +70,7 @@ struct Adjugate {
 };
 
 // Newton's method for the maximum of trace(R^T A) over rotations R exp(w): with M = R^T A the first derivative is the
-// axial vector of M, the second -(trace(M) 1 - sym(M)). Where the second is negative definite the maximum is unique:
+// axial vector of M, the second -(trace(M) 1 - sym(M)). If the second is negative definite the maximum is unique:
 // its eigenvalues are sums of two singular values, the least one with the sign of det A.
 std::optional<Quaternion> newton(const Mat3& a, Quaternion q, double norm) {
   for (int i = 0; i < rotation_iterations; ++i) {
@@ -101,7 +101,7 @@ std::optional<Quaternion> newton(const Mat3& a, Quaternion q, double norm) {
   return std::nullopt;
 }
 
-// U V^T, with the direction of the least singular value reversed where that product is a reflection.
+// U V^T, with the direction of the least singular value reversed if that product is a reflection.
 Quaternion by_svd(const Mat3& a) {
   Eigen::Matrix3d m;
   m << a.x.x, a.y.x, a.z.x, a.x.y, a.y.y, a.z.y, a.x.z, a.y.z, a.z.z;

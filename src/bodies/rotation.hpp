@@ -9,7 +9,7 @@
 
 namespace dartcast {
 
-/// A rotation R is taken as the nearest one to A where R^T A is symmetric up to this share of A's Frobenius norm:
+/// A rotation R is taken as the nearest one to A if R^T A is symmetric up to this share of A's Frobenius norm:
 /// |axial(R^T A)| <= rotation_residual |A|. The product's entries are rounded by at most 5 u |A| each (u = 2^-53; R is
 /// orthonormal up to 6 u), a component of the axial vector, a difference of two, by less than 16 u |A|.
 inline constexpr double rotation_residual = 0x1p-48;
@@ -23,8 +23,8 @@ struct Rotation {
 };
 
 /// The rotation R (determinant +1, for any A) that makes |A - R| least in the Frobenius norm: R maximizes trace(R^T A).
-/// Where several do (A of rank 1, or inverted with two equal least singular values) it is one of them, always the same
-/// for the same arguments; where A is 0, it is `start`. `start`: a guess of length 1, for example the last result; no
+/// If several do (A of rank 1, or inverted with two equal least singular values) it is one of them, always the same
+/// for the same arguments; if A is 0, it is `start`. `start`: a guess of length 1, for example the last result; no
 /// guess is wrong. Preconditions: finite. Cost: about 0.15 us from a near start, 0.4 us by the fallback.
 Rotation nearest_rotation(const Mat3& a, const Quaternion& start);
 

@@ -1,4 +1,4 @@
-// Samples of a surface, on it and in it: candidates in random order, kept where no sample is near.
+// Samples of a surface, on it and in it: candidates in random order, kept if no sample is near.
 #include <fmt/format.h>
 
 #include <algorithm>

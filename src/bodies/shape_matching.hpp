@@ -15,12 +15,12 @@ namespace dartcast {
 /// A rest shape with masses. It may be flat, a line, or a single point.
 ///
 /// The matching energy per stiffness, for particles at x and goals g of fixed fits, is constant + sum m |x - g|^2 /
-/// 2, so that the force per stiffness is -m (x - g). Where the fits are those of match(), without keep_volume or with
+/// 2, so that the force per stiffness is -m (x - g). If the fits are those of match(), without keep_volume or with
 /// linear = 0, the energy is the least over all fits. Then its derivative is that force, so it is the potential of
 /// the force.
 class RestShape {
  public:
-  /// `masses`: one per point. Throws InvalidArgument where there is no point, a mass is out of range (is_mass()), a
+  /// `masses`: one per point. Throws InvalidArgument if there is no point, a mass is out of range (is_mass()), a
   /// point is not finite, linear is outside [0, 1], a cluster is empty, names a missing point or one twice, or a
   /// point is in no cluster.
   RestShape(std::span<const Vec3> points, std::span<const double> masses, const MatchOptions& options = {});

@@ -1,4 +1,4 @@
-// A catheter's step: pieces of the push, each tried, and undone where it leaves a segment too long or too short.
+// A catheter's step: pieces of the push, each tried, and undone if it leaves a segment too long or too short.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -134,7 +134,7 @@ CatheterStep Catheter::Impl::step(const CatheterInput& input) {
   return result;
 }
 
-// Tries a substep, and undoes it where it leaves a segment off by more than `limit`.
+// Tries a substep, and undoes it if it leaves a segment off by more than `limit`.
 bool Catheter::Impl::attempt(const CatheterInput& piece, double share, Bending bending, double limit,
                              CatheterStep& result) {
   save();

@@ -3,7 +3,7 @@
 //
 // While walls move, the catheter is a partner of a joint move (solids/joint_move.hpp):
 //  1. plan()         the vessel carries the points; what touches then is solved for, as in a substep
-//  2. shorten()      where that does not free the way, walls and catheter make one share of theirs
+//  2. shorten()      if that does not free the way, walls and catheter make one share of theirs
 //  3. after_move()   the points get there
 #include <fmt/format.h>
 
@@ -80,7 +80,7 @@ void Catheter::Impl::add_touched_walls(std::size_t free) {
   }
 }
 
-// Looks at the way to the solver's targets, and keeps it where it is free and its lengths are good enough. Returns the
+// Looks at the way to the solver's targets, and keeps it if it is free and its lengths are good enough. Returns the
 // largest displacement of a free point since the last look.
 double Catheter::Impl::look_ahead(std::size_t free, Outcome& outcome) {
   const std::size_t inserted = inserted_points();

@@ -42,7 +42,7 @@ std::vector<CatheterFrame> Catheter::Impl::frames() const {
   return frames;
 }
 
-// The contact of a place on the chain with the wall nearest to it; nothing where none is near.
+// The contact of a place on the chain with the wall nearest to it; nothing if none is near.
 std::optional<SolidContact> Catheter::Impl::contact_at(const ChainWall& w, NearWalls& near) const {
   const CellComplex& complex = environment_.complex();
   const Vec3& next = w.index + 1 < inserted_points() ? particles_[w.index + 1].position : entry();

@@ -31,8 +31,8 @@ struct Catheter::Impl final : MovePartner {
   };
   enum class Bending : std::uint8_t { stiff, limp };
   struct Outcome {
-    double worst = 0.0;  // error of a segment's length at the end; with edges infinite where no way was free
-    double now = 0.0;    // with edges: that of the way looked at last; infinite where it is not free
+    double worst = 0.0;  // error of a segment's length at the end; with edges infinite if no way was free
+    double now = 0.0;    // with edges: that of the way looked at last; infinite if it is not free
     std::uint32_t rounds = 0;
     std::uint32_t held = 0;
     std::uint64_t contacts = 0;

@@ -7,7 +7,7 @@
 namespace dartcast {
 
 struct CatheterMoves {
-  /// The catheter is a partner of the next joint move. Precondition: it has edges. Throws as Catheter::move_with() where it
+  /// The catheter is a partner of the next joint move. Precondition: it has edges. Throws as Catheter::move_with() if it
   /// missed a move or an edit.
   static MovePartner& prepare(Catheter& catheter);
 };

@@ -33,7 +33,7 @@ inline Vec3 place_on(const ChainWall& wall, std::span<const Vec3> points) {
 /// second derivatives of lengths. Up to four solves find the walls that press.
 class ChainSolver {
  public:
-  /// The chain: `free` points that can move, then those that cannot: at least 2 of these, where any is free.
+  /// The chain: `free` points that can move, then those that cannot: at least 2 of these, if any is free.
   struct Chain {
     std::span<Vec3> points;  ///< in: where they are. Out: the targets of the free ones.
     std::size_t free = 0;

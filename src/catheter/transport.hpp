@@ -7,7 +7,7 @@
 
 namespace dartcast {
 
-/// v at unit length; `otherwise` where it has none.
+/// v at unit length; `otherwise` if it has none.
 inline Vec3 unit_or(const Vec3& v, const Vec3& otherwise) {
   const double length = norm(v);
   return length > 0.0 && std::isfinite(length) ? v * (1.0 / length) : otherwise;
@@ -24,7 +24,7 @@ inline Vec3 any_normal(const Vec3& t) {
 
 /// A normal of the unit tangent a, taken to b by the smallest rotation that takes a to b (R. L. Bishop, "There is more
 /// than one way to frame a curve", 1975), by two reflections (W. Wang, B. Juettler, D. Zheng, Y. Liu, "Computation of
-/// rotation minimizing frames", 2008): a unit vector perpendicular to b. Where b is -a it stays as it is.
+/// rotation minimizing frames", 2008): a unit vector perpendicular to b. If b is -a it stays as it is.
 inline Vec3 transported(const Vec3& normal, const Vec3& a, const Vec3& b) {
   const Vec3 sum = a + b;
   const double length = dot(sum, sum);

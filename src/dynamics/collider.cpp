@@ -39,7 +39,7 @@ bool in_clear(const CollidingSpheres& s, std::uint32_t a, std::uint32_t b) {
   return clear > 0.0 && dot(way, way) <= clear * clear;
 }
 
-// The longest axis; that of gravity only where it is much longer than the others. A heap's weight then passes through
+// The longest axis; that of gravity only if it is much longer than the others. A heap's weight then passes through
 // one region down to the floor.
 double Vec3::*axis_to_divide(const Vec3& extent, const Vec3& gravity) {
   constexpr double upright = 0.25;

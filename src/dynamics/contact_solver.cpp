@@ -235,7 +235,7 @@ void ContactSolver::position_correction(const SolverSpheres& spheres, const Solv
   });
 }
 
-// Lone contacts rebound at their time, but where spheres overlap.
+// Lone contacts rebound at their time, but if spheres overlap.
 void ContactSolver::rebound(const SolverSpheres& spheres, const SolverOptions& options, Threads threads) {
   if (!packets_.rebound()) return;
   packets_.solve(bodies_, rebound_iterations, threads);

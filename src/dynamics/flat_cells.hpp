@@ -9,7 +9,7 @@
 
 namespace dartcast {
 
-/// The last time known before a simplex of these cells becomes flat, or nothing: 0 where one is from the start.
+/// The last time known before a simplex of these cells becomes flat, or nothing: 0 if one is from the start.
 std::optional<double> first_flat_time(const CellComplex& complex, std::span<const Cell> cells,
                                       const VertexMotion& walls);
 

@@ -32,7 +32,7 @@ std::array<Vertex, 3> key_of(const NearWall& w, const NearestOnTriangle& nearest
   return key;
 }
 
-// The corners before and after the last move; both as they are now where `before` is `after`.
+// The corners before and after the last move; both as they are now if `before` is `after`.
 NearWall wall_at(const CellView& cell, CellFace face, std::uint16_t triangle, std::span<const Vec3> before,
                  std::span<const Vec3> after) {
   NearWall wall;
@@ -48,7 +48,7 @@ NearWall wall_at(const CellView& cell, CellFace face, std::uint16_t triangle, st
 }
 
 // Whether the way from `point`, a place of these vertices, to another corner of a wall that has them all leads nearer to
-// the centre, by more than rounding. Where it does not by itself, the same place of another wall is beside it, no farther
+// the centre, by more than rounding. If it does not by itself, the same place of another wall is beside it, no farther
 // away than `same_place`.
 bool goes_nearer(const NearWall& w, const std::array<Vertex, 3>& key, const Vec3& point, const Vec3& centre,
                  double same_place) {
@@ -82,7 +82,7 @@ double touching_slack(const Vec3& centre, double radius) {
   return touching_bound * (radius + std::max({std::abs(centre.x), std::abs(centre.y), std::abs(centre.z)}));
 }
 
-// The space that a sphere or an element sweeps: a box, and where that is much too large, also a tube around a segment.
+// The space that a sphere or an element sweeps: a box, and if that is much too large, also a tube around a segment.
 struct NearWalls::Reach {
   struct Bounds {
     Vec3 low;
@@ -198,7 +198,7 @@ void NearWalls::add_walls(const CellComplex& complex, const Reach& reach, CellFa
 }
 
 // Every way from one cell to the other passes their face, so the search passes only faces that the reach meets. The
-// box of a face misses the reach's where all points of the face lie beyond one side of it.
+// box of a face misses the reach's if all points of the face lie beyond one side of it.
 void NearWalls::visit(const CellComplex& complex, const Reach& reach, Cell c, const VertexMotion& motion) {
   const CellView cell = complex.map().view(c);
   const Shape& shape = cell.shape();

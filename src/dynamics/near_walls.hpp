@@ -75,7 +75,7 @@ struct VertexMotion {
 /// A place on the walls that a sphere may touch.
 struct WallFeature {
   Vec3 point;
-  Vec3 normal;             ///< unit, from the point to the centre; where these are equal, the wall's own
+  Vec3 normal;             ///< unit, from the point to the centre; if these are equal, the wall's own
   double distance = 0.0;   ///< from the centre
   Vec3 displacement;       ///< of that point of the wall in the last move of the vertices
   Kind kind = Kind::face;  ///< of the map's cell that holds the point
@@ -120,7 +120,7 @@ class NearWalls {
   /// The places on walls that are no farther from `centre` than `reach`, as the walls stand now, and nearer than all of
   /// the wall around them. So a vertex or an edge of a wall that is nearer elsewhere does not count. Each is there once,
   /// however many triangles share it. Sorted by distance, equal ones in the order of the search. `displacement`
-  /// is that of the last move where `moved` is set, else 0. Valid until the next search. Cost: that of the search,
+  /// is that of the last move if `moved` is set, else 0. Valid until the next search. Cost: that of the search,
   /// and 0.1 us a triangle.
   std::span<const WallFeature> within(const CellComplex& complex, Cell cell, const Vec3& centre, double reach,
                                       bool moved);
@@ -146,7 +146,7 @@ class NearWalls {
   void add_walls(const CellComplex& complex, const Reach& reach, CellFace face, const VertexMotion& motion);
 
   std::vector<Cell> cells_;           // in the order in which they were reached
-  std::vector<std::uint32_t> table_;  // of cells reached: one more than the place in cells_, 0 where empty
+  std::vector<std::uint32_t> table_;  // of cells reached: one more than the place in cells_, 0 if empty
   std::vector<std::size_t> slots_;    // of cells_, in the table
   std::vector<std::uint8_t> sides_;   // of a cell's points, while it is looked at
   std::vector<NearWall> walls_;

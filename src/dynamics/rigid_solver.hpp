@@ -1,6 +1,6 @@
 // Impulses at the contacts of rigid bodies and spheres, with each other and with walls.
 //
-// As dynamics/contact_solver.hpp (E. Catto, "Iterative dynamics with temporal coherence", 2005), where a body also
+// As dynamics/contact_solver.hpp (E. Catto, "Iterative dynamics with temporal coherence", 2005), but a body also
 // turns. Friction then changes the velocity along the normal, so it is solved first, from the impulse of the
 // iteration before.
 #pragma once

@@ -25,7 +25,7 @@ struct SpherePair {
 
 namespace detail {
 
-/// The box that a sphere sweeps; empty where low is above high.
+/// The box that a sphere sweeps; empty if low is above high.
 struct SweptBox {
   Vec3 low;
   Vec3 high;

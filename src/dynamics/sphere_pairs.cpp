@@ -1,4 +1,4 @@
-// Pairs of spheres whose swept boxes meet: from cell lists where spheres are small, else from the grid.
+// Pairs of spheres whose swept boxes meet: from cell lists if spheres are small, else from the grid.
 #include "dynamics/sphere_pairs.hpp"
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t pair_grain = 256;
 
-// Lists are quicker than the grid where edges of cells are longer than this many reaches, because few spheres then
+// Lists are quicker than the grid if edges of cells are longer than this many reaches, because few spheres then
 // meet other cells. Measured between 16 and 32, for 0.1 to 3 particles a cell.
 constexpr double short_reach = 16.0;
 
@@ -29,7 +29,7 @@ constexpr unsigned narrow_searches = 16;
 
 constexpr double max_coordinate = 0x1p+1000;  // of a box: differences and levels of the grid stay in range
 
-// False where one is NaN.
+// False if one is NaN.
 bool in_range(const Vec3& v) {
   return std::abs(v.x) <= max_coordinate && std::abs(v.y) <= max_coordinate && std::abs(v.z) <= max_coordinate;
 }
@@ -208,7 +208,7 @@ bool PairFinder::wide_boxes_hold(Threads threads) {
   return std::find(hold_.begin(), hold_.end(), 0) == hold_.end();
 }
 
-// A wide box has room for the sphere's motion of some steps. Where that lasts for no step, the next searches do
+// A wide box has room for the sphere's motion of some steps. If that lasts for no step, the next searches do
 // without, because they find more pairs than they need.
 void PairFinder::widen(std::span<const SphereMotion> spheres) {
   if (narrow_left_ > 0)

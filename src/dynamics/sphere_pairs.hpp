@@ -1,7 +1,7 @@
 // Pairs of spheres that may meet in a step: each pair once, sorted.
 //
-// Where cells hold few and small particles, the search follows the cells' lists through free neighbours, as far as a
-// sphere and its motion reach. Where cells hold many, or spheres are larger, it uses a grid of several levels, one
+// If cells hold few and small particles, the search follows the cells' lists through free neighbours, as far as a
+// sphere and its motion reach. If cells hold many, or spheres are larger, it uses a grid of several levels, one
 // for each power of two of the spheres' extents. The cost of the grid per sphere depends neither on the crowd in a
 // cell nor on the range of radii. Both give the same pairs, except pairs with walls in between. The grid is searched
 // with wider boxes, and again only when a sphere has left its own. The pairs of the boxes are picked from those of the
@@ -25,7 +25,7 @@ namespace dartcast {
 
 /// The method of the search.
 enum class PairSearch : std::uint8_t {
-  automatic,  ///< by lists where no cell is crowded and spheres reach a small part of a cell, else by the grid
+  automatic,  ///< by lists if no cell is crowded and spheres reach a small part of a cell, else by the grid
   lists,
   grid
 };
@@ -37,7 +37,7 @@ class PairFinder {
   /// other. The search through cells starts in the cells of the centres and passes free cells alone. So it leaves out
   /// pairs that no way within the box of both connects, as on two sides of a blocked layer. separated() decides
   /// whether a wall is between the others. `states`, `spheres`: by particle; `lists` up to date with the states. The
-  /// result holds until the next call. It is the same for any number of threads. Throws InvalidArgument where a
+  /// result holds until the next call. It is the same for any number of threads. Throws InvalidArgument if a
   /// sphere's box is not finite or reaches beyond 2^1000.
   std::span<const SpherePair> find(const CellComplex& complex, const CellLists& lists,
                                    std::span<const ParticleState> states, std::span<const SphereMotion> spheres,
@@ -79,7 +79,7 @@ class PairFinder {
 };
 
 /// Whether a wall is between the centres, on the straight way. Exact. Precondition: both states are of the complex as
-/// it stands; held ones are separated from none. Cost: a walk; a comparison where both are in one cell.
+/// it stands; held ones are separated from none. Cost: a walk; a comparison if both are in one cell.
 bool separated(const CellComplex& complex, const ParticleState& a, const ParticleState& b);
 
 }  // namespace dartcast

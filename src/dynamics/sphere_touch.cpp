@@ -56,7 +56,7 @@ struct Relative {
   }
 };
 
-// The first root of a t^2 + 2 b t + c, where c > 0; infinite where there is none.
+// The first root of a t^2 + 2 b t + c, if c > 0; infinite if there is none.
 double first_root(double a, double b, double c) {
   if (!(b < 0.0)) return infinity;
   const double square = b * b - a * c;

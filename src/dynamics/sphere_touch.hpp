@@ -14,7 +14,7 @@ struct SphereMotion {
 
 /// The pair's constraint in a solver: a bound of the relative motion along a normal.
 struct Approach {
-  Vec3 normal;  ///< unit, from a to b where they first touch; where they do not, where they come closest
+  Vec3 normal;  ///< unit, from a to b where they first touch; if they do not, where they come closest
   double gap =
       0.0;  ///< room along the normal at the start: (b - a) . normal - radii; negative: the depth of an overlap
   double distance = 0.0;  ///< between the surfaces there, >= 0; of an overlap: the gap

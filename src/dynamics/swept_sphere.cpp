@@ -150,7 +150,7 @@ class TouchSearch {
     return dot(n, d[0]) > bound && dot(n, d[1]) > bound && dot(n, d[2]) > bound;
   }
 
-  // Whether an interval without a proof stays undivided: in doubles where it is short, with twice the digits where it
+  // Whether an interval without a proof stays undivided: in doubles if it is short, with twice the digits if it
   // grazes.
   [[nodiscard]] bool is_settled(const Instant& a, const Instant& b, const Real& level, double width,
                                 double resolution) const {

@@ -29,7 +29,7 @@ Vector<Real> cross(const Vector<Real>& a, const Vector<Real>& b) {
 template <class Real>
 using TriangleOf = std::array<Vector<Real>, 3>;
 
-/// Points from the origin to the nearest point: `direction` has a length of 1, or is 0 where the distance is.
+/// Points from the origin to the nearest point: `direction` has a length of 1, or is 0 if the distance is.
 template <class Real>
 struct NearestTo {
   Vector<Real> direction;
@@ -38,7 +38,7 @@ struct NearestTo {
   std::uint8_t corners = 0;  ///< bit i: corner i has a weight
 };
 
-/// The point is inside where the foot of the origin is; else on the nearest side. Sides suffice where the triangle is
+/// The point is inside if the foot of the origin is; else on the nearest side. Sides suffice if the triangle is
 /// flat.
 template <class Real>
 NearestTo<Real> nearest_to_origin(const TriangleOf<Real>& d) {
@@ -64,7 +64,7 @@ NearestTo<Real> nearest_to_origin(const TriangleOf<Real>& d) {
   NearestTo<Real> nearest;
   Vector<Real> point = d[0];
   Real square = dot(point, point);
-  nearest.weights[0] = one;  // where rounding finds no point on a side, in a triangle that is almost a point
+  nearest.weights[0] = one;  // if rounding finds no point on a side, in a triangle that is almost a point
   nearest.corners = 1;
   for (unsigned i = 0; i < 3; ++i) {
     const unsigned j = (i + 1) % 3;

@@ -60,7 +60,7 @@ void AdaptiveSubdivision::update_after_edit(const CombinatorialMap& map, std::sp
   for (Subdivision& s : subdivisions_) dartcast::update_after_edit(map, added, s);
 }
 
-// The cell with the most particles; the lowest number where several have as many.
+// The cell with the most particles; the lowest number if several have as many.
 AdaptiveSubdivision::Fullest AdaptiveSubdivision::fullest(const CombinatorialMap& map) const {
   Fullest result;
   for (const Cell c : map.cells()) {

@@ -15,7 +15,7 @@ namespace dartcast {
 /// Keeps the subdivisions that it has made.
 class AdaptiveSubdivision {
  public:
-  /// Throws InvalidArgument where min_particles >= max_particles, or smallest is negative or not finite.
+  /// Throws InvalidArgument if min_particles >= max_particles, or smallest is negative or not finite.
   explicit AdaptiveSubdivision(const AdaptiveSubdivisionOptions& options);
 
   /// Makes an edit of the environment and takes its particles along: Simulation::edit(), or Environment::edit() and
@@ -29,7 +29,7 @@ class AdaptiveSubdivision {
   AdaptiveSubdivisionReport adapt(const CellComplex& complex, const Particles& particles, const Edit& edit,
                                   Ranks* ranks = nullptr);
 
-  /// Repeats an edit, after all edits before it. Throws EditRefused, or InvalidArgument where there
+  /// Repeats an edit, after all edits before it. Throws EditRefused, or InvalidArgument if there
   /// is no such cell or subdivision.
   void repeat(const CellComplex& complex, const SubdivisionChange& change, const Edit& edit);
 

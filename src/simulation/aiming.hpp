@@ -24,7 +24,7 @@ class Aiming {
   void set_field(VelocityField field) { field_ = std::move(field); }
   void set_force(VectorField force) { force_ = std::move(force); }
   /// Reads what the next step needs of the fields' files, before that step changes anything. Throws as
-  /// VectorField::hold(), and InvalidArgument where an integrator has no field to follow.
+  /// VectorField::hold(), and InvalidArgument if an integrator has no field to follow.
   void load_step();
 
   /// Brings the fields to the times of a segment of a step.
@@ -35,7 +35,7 @@ class Aiming {
   void aim_stuck(ParticleSet& set, double dt);
   /// By particle.
   [[nodiscard]] std::span<Vec3> targets() { return targets_; }
-  /// The acceleration that contacts know of: none where a field or a force changes velocities, too. Drag reduces it.
+  /// The acceleration that contacts know of: none if a field or a force changes velocities, too. Drag reduces it.
   [[nodiscard]] Acceleration acceleration(double dt) const;
 
  private:

@@ -32,7 +32,7 @@ class BodiesComponent final : public SimulationComponent {
   /// (how many, and the first).
   void add(const BodyScene& scene);
 
-  /// For one joint move; null where no body has edges.
+  /// For one joint move; null if no body has edges.
   [[nodiscard]] MovePartner* partner();
 
   void step(double begin) override;

@@ -18,7 +18,7 @@ class CathetersComponent final : public SimulationComponent {
   /// `dt`: of a step, s.
   CathetersComponent(Environment& environment, double dt) : environment_(environment), dt_(dt) {}
 
-  /// Throws Error that names the catheter where its entry is not in the lumen.
+  /// Throws Error that names the catheter if its entry is not in the lumen.
   void add(const CatheterScene& scene);
 
   /// Those with edges, each for one joint move.
@@ -36,7 +36,7 @@ class CathetersComponent final : public SimulationComponent {
   /// The last step of each.
   [[nodiscard]] std::span<const CatheterStep> last_steps() const { return last_; }
   [[nodiscard]] std::vector<CatheterSummary> summaries() const;
-  /// A camera's places along a catheter, from its entry inwards. Empty where nothing is inserted.
+  /// A camera's places along a catheter, from its entry inwards. Empty if nothing is inserted.
   [[nodiscard]] CameraPath camera_path(std::size_t i) const;
 
  private:

@@ -40,7 +40,7 @@ class CellCounts {
   [[nodiscard]] std::size_t place(Cell c) const { return first_[c.pool()] + c.index(); }
 
   CellLists lists_;                     // of this rank
-  std::vector<std::uint64_t> sums_;     // of all ranks; empty where there is one
+  std::vector<std::uint64_t> sums_;     // of all ranks; empty if there is one
   std::array<std::size_t, 6> first_{};  // of each pool's cells in `sums_`
 };
 

@@ -9,7 +9,7 @@
 
 namespace dartcast::collectives {
 
-/// Exchanges of particles in a step of a tenth of a cell: one, and a second one where a walk goes on there.
+/// Exchanges of particles in a step of a tenth of a cell: one, and a second one if a walk goes on there.
 inline constexpr double rounds = 2.0;
 /// Sums in a step, and one more for each round. With output: counts and energies. Steps in which particles leave or are held,
 /// or whose contacts are written, have a gather besides.

@@ -25,7 +25,7 @@ class SimulationComponent {
   /// Writes its own member of the state.
   virtual void save(SimulationState& state) const = 0;
   /// Goes on from its member of the state, in an environment that stands as it did then. Throws InvalidArgument,
-  /// nothing changed, where the state does not fit.
+  /// nothing changed, if the state does not fit.
   virtual void restore(const SimulationState& state) = 0;
   [[nodiscard]] virtual Audit audit() const = 0;
   [[nodiscard]] virtual StateHash state_hash() const = 0;

@@ -17,7 +17,7 @@ namespace dartcast {
 struct FrameBlend {
   std::array<std::span<const Vec3>, 4> frames;
   SampleWeights use;
-  FrameReadAhead::Frames read = {};  ///< keeps them; empty where they are in memory
+  FrameReadAhead::Frames read = {};  ///< keeps them; empty if they are in memory
 
   /// Writes the positions of the vertices in [begin, end).
   void copy(std::size_t begin, std::size_t end, std::span<Vec3> out) const;
@@ -25,11 +25,11 @@ struct FrameBlend {
 
 class DeformationFrames {
  public:
-  /// Takes times, and frames or reader. Throws InvalidArgument where times, or frames in memory, are out of the range
+  /// Takes times, and frames or reader. Throws InvalidArgument if times, or frames in memory, are out of the range
   /// that DeformationStep has for them.
   DeformationFrames(DeformationStep step, std::size_t vertices);
 
-  /// For a mesh of the plane: throws InvalidArgument where a frame in memory has a point with z != 0.
+  /// For a mesh of the plane: throws InvalidArgument if a frame in memory has a point with z != 0.
   void check_plane() const;
 
   /// The frames at a time. Waits for them, and throws, as Deformation::load_frames().
@@ -38,7 +38,7 @@ class DeformationFrames {
  private:
   SampleTimes times_;
   std::vector<std::vector<Vec3>> frames_;
-  std::unique_ptr<FrameReadAhead> ahead_;  // none where all frames are in memory
+  std::unique_ptr<FrameReadAhead> ahead_;  // none if all frames are in memory
 };
 
 }  // namespace dartcast

@@ -25,10 +25,10 @@ class EventScheduler {
 
   /// Before each step: carries out events that are due. Throws as apply(), naming the event.
   void before_step(Simulation& simulation);
-  /// After each step: remeshes and subdivides where that is due, and counts.
+  /// After each step: remeshes and subdivides if that is due, and counts.
   void after_step(Simulation& simulation);
-  /// Does again those changes of the log that have not been made yet. Throws InvalidArgument where other changes have
-  /// been made, where the log names an unknown event, or where there are particles and something is to be done.
+  /// Does again those changes of the log that have not been made yet. Throws InvalidArgument if other changes have
+  /// been made, if the log names an unknown event, or if there are particles and something is to be done.
   void replay(Simulation& simulation, const EventLog& log);
   /// Goes on from a log that has been replayed.
   void set_log(const EventLog& log) { log_ = log; }

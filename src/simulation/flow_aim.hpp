@@ -14,7 +14,7 @@ namespace dartcast::detail {
 /// The values that are the same for all particles in a step. Arrays hold an entry for each vertex.
 struct FlowScene {
   const Vec3* now = nullptr;
-  const Vec3* before = nullptr;  ///< positions before the last move; `now` where nothing moves
+  const Vec3* before = nullptr;  ///< positions before the last move; `now` if nothing moves
   const Vec3* values = nullptr;  ///< of the field
   const Vec3* rest = nullptr;    ///< positions at rest; null in space's frame
   bool planar = false;
@@ -37,8 +37,8 @@ struct FlowParticles {
 };
 
 /// Gives particles new velocities and targets, as Aiming does one by one, with the same bits in every
-/// instruction set. Bit k of aimed[i] is set where this was done for particle 4 i + k: it is left to the caller where
-/// the particle is held or not alive or its simplex is a sliver, and at the end, where fewer than four remain.
+/// instruction set. Bit k of aimed[i] is set if this was done for particle 4 i + k: it is left to the caller if
+/// the particle is held or not alive or its simplex is a sliver, and at the end, if fewer than four remain.
 void aim_in_flow(const FlowScene& scene, const FlowParticles& particles, InstructionSet set = best_instruction_set());
 
 namespace portable {

@@ -12,7 +12,7 @@
 namespace dartcast {
 namespace {
 
-// Those that are needed and one to read ahead, or more where they fit.
+// Those that are needed and one to read ahead, or more if they fit.
 std::size_t frames_that_fit(std::size_t vertices, std::size_t needed) {
   const std::size_t bytes = std::max<std::size_t>(vertices, 1) * sizeof(Vec3);
   return std::clamp<std::size_t>(frame_memory / bytes, needed + 1, max_frames_held);

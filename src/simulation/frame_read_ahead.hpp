@@ -25,7 +25,7 @@ struct ReadFrame {
   std::exception_ptr error;
 };
 
-/// Holds the frames from the one before the time that is needed, as many as fit in the memory for them. Where time
+/// Holds the frames from the one before the time that is needed, as many as fit in the memory for them. If time
 /// jumps the frames from there are read instead.
 class FrameReadAhead {
  public:
@@ -38,8 +38,8 @@ class FrameReadAhead {
 
   using Frames = std::array<std::shared_ptr<const ReadFrame>, 4>;
   /// Waits for frames, at most SampleTimes::needed(), in the order of their times; of a cycle again from 0 behind the
-  /// last. Any thread may call it; one at a time is served. Throws where one cannot be read: now, not only when it was
-  /// tried ahead of its time. Throws Error where no thread can be started.
+  /// last. Any thread may call it; one at a time is served. Throws if one cannot be read: now, not only when it was
+  /// tried ahead of its time. Throws Error if no thread can be started.
   Frames get(std::span<const std::size_t> frames);
 
   /// Frames that are held at most.

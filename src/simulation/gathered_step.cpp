@@ -1,6 +1,6 @@
 // Sends what happened in a step to the first rank, which puts it in the order of one process: by id.
 //
-// Phases: counts are summed, and entries of lists counted. Where there are any, each rank packs its own; the first unpacks
+// Phases: counts are summed, and entries of lists counted. If there are any, each rank packs its own; the first unpacks
 // all and merges them, contacts with their walls first, because particles that left name their last contact.
 #include "simulation/gathered_step.hpp"
 
@@ -84,7 +84,7 @@ void forget_indices(std::vector<T>& entries) {
   for (T& e : entries) e.particle = of_another_rank;
 }
 
-// The contacts of one particle on one rank: consecutive, as are their walls. Where the environment is spread over ranks, it
+// The contacts of one particle on one rank: consecutive, as are their walls. If the environment is spread over ranks, it
 // may have had others before, whose walls are in front of the first.
 struct ContactRun {
   std::uint64_t id;

@@ -60,7 +60,7 @@ struct ResolvedScene {
 };
 
 /// Makes the environment of a scene whose files have been read, and looks up all names in it. Throws InvalidArgument if a
-/// file has not been read; InvalidMesh if the mesh has not what a name stands for; and as Environment. Collective where
+/// file has not been read; InvalidMesh if the mesh has not what a name stands for; and as Environment. Collective if
 /// ranks share the scene by cells.
 ResolvedScene resolve(const Scene& scene, Threads threads, Ranks* ranks, Partition partition);
 

@@ -33,7 +33,7 @@ inline Quaternion turned(const Quaternion& rotation, const Vec3& turn) {
   return normalized(rotation_of(turn) * rotation);
 }
 
-/// The turn from a to b the shorter way, of at most a half turn; exactly 0 where they are equal.
+/// The turn from a to b the shorter way, of at most a half turn; exactly 0 if they are equal.
 inline Vec3 turn_between(const Quaternion& a, const Quaternion& b) {
   const Quaternion q = b * Quaternion{a.w, -a.v};
   const double sine = norm(q.v);
@@ -55,9 +55,9 @@ struct RigidWay {
 };
 
 /// How many equal slices a way needs, so that chords are at most `distance` off it at any time, for all points within `arm`
-/// of the axis. Preconditions: angle, arm, distance >= 0, and distance > 0 where arm is.
+/// of the axis. Preconditions: angle, arm, distance >= 0, and distance > 0 if arm is.
 ///
-/// In a slice of angle a the acceleration of such a point is at most a^2 arm, where the slice takes the time 1. So a chord,
+/// In a slice of angle a the acceleration of such a point is at most a^2 arm, if the slice takes the time 1. So a chord,
 /// which interpolates the way, is off by at most a^2 arm / 8.
 inline double slice_count(double angle, double arm, double distance) {
   return arm > 0.0 ? std::max(1.0, std::ceil(angle * std::sqrt(arm / (8.0 * distance)))) : 1.0;

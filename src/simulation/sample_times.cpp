@@ -29,7 +29,7 @@ double SampleTimes::in_cycle(double time) const {
   return times_.front() + (phase >= 0.0 && phase < cycle_ ? phase : 0.0);
 }
 
-// Behind the last sample of a cycle is the first one, or that behind it where the two are at one time.
+// Behind the last sample of a cycle is the first one, or that behind it if the two are at one time.
 SampleTimes::Neighbour SampleTimes::after(std::size_t sample) const {
   if (sample + 1 < size()) return {sample + 1, times_[sample + 1] - times_[sample]};
   return gap() > 0.0 ? Neighbour{0, gap()} : Neighbour{1, times_[1] - times_[0]};

@@ -22,7 +22,7 @@ struct SampleWeights {
 class SampleTimes {
  public:
   SampleTimes() = default;
-  /// Throws InvalidArgument, which begins with the owner's name, where times do not increase, or the cycle is shorter than
+  /// Throws InvalidArgument, which begins with the owner's name, if times do not increase, or the cycle is shorter than
   /// they take.
   SampleTimes(std::string_view owner, std::vector<double> times, Interpolation interpolation, double cycle);
 

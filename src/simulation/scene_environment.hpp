@@ -6,19 +6,19 @@
 
 namespace dartcast {
 
-/// By the generator, or a copy of the mesh. Throws InvalidArgument where the source is a file.
+/// By the generator, or a copy of the mesh. Throws InvalidArgument if the source is a file.
 MeshData generated_mesh(const MeshSource& source);
 
 /// Sets free cells and patches as the scene says; patches from an array have been read with the file. Precondition: a
-/// mesh that check_and_repair() found valid. Throws InvalidMesh, naming those there are, where a region, array or patch
+/// mesh that check_and_repair() found valid. Throws InvalidMesh, naming those there are, if a region, array or patch
 /// is not in the mesh.
 void select_cells_and_patches(MeshData& mesh, const EnvironmentScene& scene);
 
-/// Throws InvalidMesh where a patch that the scene names has no face that is a wall. An event may make one: where the
+/// Throws InvalidMesh if a patch that the scene names has no face that is a wall. An event may make one: if the
 /// scene has any, nothing is checked. `mesh`: as select_cells_and_patches() leaves it.
 void check_patches(const Scene& scene, const MeshData& mesh);
 
-/// The mesh with scale, free cells and patches as the scene says. Throws InvalidArgument where something must be read
+/// The mesh with scale, free cells and patches as the scene says. Throws InvalidArgument if something must be read
 /// first, and InvalidMesh.
 MeshData scene_mesh(const EnvironmentScene& scene);
 

@@ -12,10 +12,10 @@
 
 namespace dartcast {
 
-/// Throws InvalidArgument, which names it, where a scene has something that needs the whole environment on one rank.
+/// Throws InvalidArgument, which names it, if a scene has something that needs the whole environment on one rank.
 void check_can_be_spread(const Scene& scene);
 
-/// The rank's part of the scene's mesh, which may be given as such. Throws as partition(), and InvalidArgument where the part
+/// The rank's part of the scene's mesh, which may be given as such. Throws as partition(), and InvalidArgument if the part
 /// is of another rank.
 MeshPart scene_part(const EnvironmentScene& scene, const Ranks& ranks);
 

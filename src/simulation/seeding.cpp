@@ -34,7 +34,7 @@ std::array<double, N> random_weights(KeyedRandom& random) {
   return cut;
 }
 
-// The first entry of a table of sums above a place in it. Where all are 0, the last.
+// The first entry of a table of sums above a place in it. If all are 0, the last.
 std::size_t entry_above(const std::vector<std::uint64_t>& up_to, std::uint64_t place) {
   const auto found = std::upper_bound(up_to.begin(), up_to.end(), place);
   return std::min<std::size_t>(static_cast<std::size_t>(found - up_to.begin()), up_to.size() - 1);
@@ -286,7 +286,7 @@ void PatchSampler::update(const CellComplex& complex) {
   areas_ = SizeTable(std::move(sizes), cells, part_);
 }
 
-// Where all areas are 0, the last triangle.
+// If all areas are 0, the last triangle.
 std::optional<Sample> PatchSampler::sample(const CellComplex& complex, KeyedRandom& random) const {
   const std::uint64_t place = random.below(areas_.length());
   const unsigned dimension = complex.map().dimension();
@@ -327,7 +327,7 @@ std::vector<std::uint64_t> of_all_ranks(const std::vector<std::uint64_t>& ids, R
 
 }  // namespace
 
-// Sampled points are rounded. One that fell out of its simplex is drawn again, with the next numbers of the same id. Where
+// Sampled points are rounded. One that fell out of its simplex is drawn again, with the next numbers of the same id. If
 // ranks have an environment's parts, all draw for each particle, and the one whose cell it is adds it.
 template <class Sampler>
 std::vector<std::uint64_t> place(const Placing& placing, Particles& particles, const Sampler& sampler,

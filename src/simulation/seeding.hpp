@@ -20,10 +20,10 @@ namespace dartcast {
 /// Particles that one call, or one step of an inlet, adds at most. A count beyond it is a mistake: it would take hours
 /// before memory ends.
 inline constexpr std::uint64_t most_at_once = std::uint64_t{1} << 31U;
-/// Throws InvalidArgument where the count is beyond it.
+/// Throws InvalidArgument if the count is beyond it.
 void check_count(std::size_t count);
 
-/// A point, and the simplex that it lies in up to rounding: to be added exactly, and drawn again where that fails.
+/// A point, and the simplex that it lies in up to rounding: to be added exactly, and drawn again if that fails.
 struct Sample {
   SimplexId simplex;
   Vec3 position;
@@ -47,15 +47,15 @@ struct SampledPart {
   Ranks& ranks;
 };
 
-/// The scale for sizes of which this rank has so many, and this largest one. Collective where there is a part.
+/// The scale for sizes of which this rank has so many, and this largest one. Collective if there is a part.
 FixedPointScale scale_of(double largest, std::size_t count, const std::optional<SampledPart>& part);
 
-/// Sizes in a row, each as long a piece of a line as it is large: a place on the line chooses an entry. Where ranks have an
+/// Sizes in a row, each as long a piece of a line as it is large: a place on the line chooses an entry. If ranks have an
 /// environment's parts, each has its own entries, and the line is that of one process.
 class SizeTable {
  public:
   SizeTable() = default;
-  /// `cells`: of each size, ascending. Collective where there is a part.
+  /// `cells`: of each size, ascending. Collective if there is a part.
   SizeTable(std::vector<std::uint64_t> sizes, std::span<const Cell> cells, const std::optional<SampledPart>& part);
 
   /// Over all ranks; 0: there is nothing to choose.
@@ -74,7 +74,7 @@ class SizeTable {
 /// linear.
 class VolumeSampler {
  public:
-  /// Throws InvalidArgument where no cell is free.
+  /// Throws InvalidArgument if no cell is free.
   explicit VolumeSampler(const CellComplex& complex, Threads threads = {}, const std::optional<SampledPart>& part = {});
   /// In a free cell; none: in another rank's. Cost: the logarithm of the cells.
   [[nodiscard]] std::optional<Sample> sample(const CellComplex& complex, KeyedRandom& random) const;
@@ -89,7 +89,7 @@ class VolumeSampler {
 /// the simplex there.
 class PatchSampler {
  public:
-  /// Throws InvalidArgument where the patch has no face at a free cell. Cost: linear in the cells.
+  /// Throws InvalidArgument if the patch has no face at a free cell. Cost: linear in the cells.
   PatchSampler(const CellComplex& complex, Patch patch, const std::optional<SampledPart>& part = {});
   /// After an edit it is as a new one, but it may be empty. Cost: the cells touched, and the patch's faces.
   void update_after_edit(const CellComplex& complex, const ComplexEditReport& edit);
@@ -121,7 +121,7 @@ struct Placing {
 };
 
 /// Adds those of these particles that are this rank's. Returns their ids: those that came late stand behind the others.
-/// Throws InvalidArgument where points fall outside again and again. Collective where there is a part.
+/// Throws InvalidArgument if points fall outside again and again. Collective if there is a part.
 template <class Sampler>
 std::vector<std::uint64_t> place(const Placing& placing, Particles& particles, const Sampler& sampler,
                                  std::uint64_t first, std::uint64_t count);

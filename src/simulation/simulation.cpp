@@ -25,13 +25,13 @@ Simulation::Simulation(Environment& environment, const SimulationOptions& option
 
 Simulation::~Simulation() = default;
 
-// Where ranks share the simulation by cells, these may first move between them. Files of the motion or of fields that cannot
+// If ranks share the simulation by cells, these may first move between them. Files of the motion or of fields that cannot
 // be read end a step before anything changes. Then a step goes through these phases:
 //  1. events that are due edit the environment;
 //  2. the particles step: inlets inject, vertices move, velocities change, particles advance, some leave;
 //  3. the other components step in the environment as it stands then: solids, bodies, catheters, statistics;
 //  4. the first rank gets what happened on all, and statistics count it;
-//  5. invalid cells are remeshed and crowded cells are subdivided, where that is due.
+//  5. invalid cells are remeshed and crowded cells are subdivided, if that is due.
 const SimulationStep& Simulation::step() {
   constexpr std::uint64_t steps_between_balances = 10;
   if (parts_->motion_of_part && steps() % steps_between_balances == 0) balance(*parts_);

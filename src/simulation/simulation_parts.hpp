@@ -19,7 +19,7 @@
 namespace dartcast {
 
 struct Simulation::Parts {
-  /// `own`: the environment, where the simulation has made it; none where it is another's.
+  /// `own`: the environment, if the simulation has made it; none if it is another's.
   Parts(std::unique_ptr<Environment> own, Environment& used, const SimulationOptions& options)
       : own_environment(std::move(own)),
         environment(used),

@@ -38,7 +38,7 @@ struct VertexPlaces {
   std::vector<Vec3> now;
 };
 
-/// The solids; empty where there are none.
+/// The solids; empty if there are none.
 struct SolidsState {
   struct Tool {
     RigidPose pose;

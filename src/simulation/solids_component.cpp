@@ -3,7 +3,7 @@
 // of its way.
 //
 // A tool that turns goes on chords, from pose to pose. Its step is cut into slices, so that no point leaves its arc by more
-// than the tool's separation from walls. Where it stops in a slice, the set tries poses of the slice until the chord to one
+// than the tool's separation from walls. If it stops in a slice, the set tries poses of the slice until the chord to one
 // is free. So a tool is rigid at the end of each slice.
 #include "simulation/solids_component.hpp"
 

@@ -11,7 +11,7 @@
 
 namespace dartcast {
 
-/// As Collider, where bodies take part, too: their particles touch as spheres, and each body answers as a rigid one.
+/// As Collider, if bodies take part, too: their particles touch as spheres, and each body answers as a rigid one.
 /// Keeps lists, impulses and memory from step to step.
 class SphereBodyCollider {
  public:

@@ -21,7 +21,7 @@ constexpr std::size_t wall_grain = 256;
 // contact: the nearest point of a far wall says little about the point that is touched.
 constexpr double wall_share = 0.25;
 
-// The wall as the solver sees it, which lets spheres rest on it; none where a sphere must meet it by its own step.
+// The wall as the solver sees it, which lets spheres rest on it; none if a sphere must meet it by its own step.
 std::optional<WallSurface> solved_surface(const WallResponse& response) {
   switch (response.kind) {
     case WallResponseKind::reflect: return WallSurface{response.restitution, response.friction};
@@ -71,7 +71,7 @@ void SphereContacts::walls_of(ParticleSet& set, std::size_t i, double dt, bool m
   const double r = met_radii_[i];
   clearances_[i] = clearance(set, i);
   if (clearances_[i] >= r * (1.0 + wall_share)) return;
-  // Where walls stand still and none is next to the sphere, search farther: the result then serves for many steps. The
+  // If walls stand still and none is next to the sphere, search farther: the result then serves for many steps. The
   // walls within the share that counts are the same.
   const bool next_to_wall = motion_.deforms() || (clear_[i].distance > 0.0 && clear_[i].distance < 1.5 * r);
   const double reach = next_to_wall ? wall_share * r : r;
@@ -111,7 +111,7 @@ void SphereContacts::find_walls(ParticleSet& set, double dt, bool moving) {
 }
 
 // The contacts of spheres that came to walls among others. The time is that of the way without impulses; the end of the
-// step where only another sphere brings it there.
+// step if only another sphere brings it there.
 void SphereContacts::note_contacts(const ParticleSet& set, std::span<const Vec3> targets,
                                    std::span<const WallContact> walls, double dt) {
   solved_.clear();

@@ -30,7 +30,7 @@ class StatisticsComponent final : public SimulationComponent {
   [[nodiscard]] const StatisticsOptions& options() const { return options_; }
   [[nodiscard]] const Statistics& statistics() const { return statistics_; }
   [[nodiscard]] double& seconds() { return statistics_.seconds; }
-  /// Throws InvalidArgument where the state is of a simulation with other statistics.
+  /// Throws InvalidArgument if the state is of a simulation with other statistics.
   void check(const SimulationState& state) const;
 
   /// After the injection, before anything moves.

@@ -44,7 +44,7 @@ class LastingCorners {
     for (const Vertex v : edit.deleted) passing_.insert(v.value);
   }
 
-  // Without vertices that the edit made or removed, from the lowest on. Empty where too few remain to name a face.
+  // Without vertices that the edit made or removed, from the lowest on. Empty if too few remain to name a face.
   [[nodiscard]] std::vector<Vertex> operator()(std::span<const Vertex> corners, unsigned dimension) const {
     std::vector<Vertex> lasting;
     for (Vertex v : corners) {

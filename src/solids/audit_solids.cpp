@@ -1,5 +1,5 @@
 // Intersections of triangles by exact signs. In order: the boxes (a tree), the sides of each triangle with the other,
-// and, where these lie in one plane, sides with sides.
+// and, if these lie in one plane, sides with sides.
 #include "solids/audit_solids.hpp"
 
 #include <algorithm>

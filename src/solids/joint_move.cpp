@@ -1,4 +1,4 @@
-// A joint move: all partners plan; where one has no room for the whole way, walls and partners make one share of theirs.
+// A joint move: all partners plan; if one has no room for the whole way, walls and partners make one share of theirs.
 // The rounded share is checked again, and halved until it is free. Then all move.
 #include "solids/joint_move.hpp"
 
@@ -104,7 +104,7 @@ double move_together(Environment& environment, std::span<MovePartner* const> par
   for (double share = made; made < 1.0; share *= 0.5) {
     made = share < least_share ? 0.0 : share;
     for (std::size_t p = 0; p < positions.size(); ++p) after[p] = before[p] + (positions[p] - before[p]) * made;
-    if (made == 0.0) std::copy(before.begin(), before.end(), after.begin());  // also where the way is not finite
+    if (made == 0.0) std::copy(before.begin(), before.end(), after.begin());  // also if the way is not finite
     complex.steiner_weights().compute(after);
     if (std::all_of(partners.begin(), partners.end(), [&](MovePartner* p) { return p->shorten(made, walls); })) break;
   }

@@ -12,7 +12,7 @@
 
 namespace dartcast {
 
-/// A partner moves at the same time as the walls, and stops them where it has no room. The calls come in this order; up to
+/// A partner moves at the same time as the walls, and stops them if it has no room. The calls come in this order; up to
 /// after_move() nothing that the caller can see changes.
 class MovePartner {
  public:
@@ -50,9 +50,9 @@ struct JointMoves {
   /// Checks as SolidSet::move_with() does, and throws as it does. The set is a partner of the next joint move.
   static MovePartner& prepare(SolidSet& solids, SolidWay way, const SolidStepOptions& options);
   /// As SolidSet::advance(), on this way. A solid that stops in a slice stays there to the end of the step. Precondition,
-  /// also of prepare(): options.rounds is 0 where the way is not straight.
+  /// also of prepare(): options.rounds is 0 if the way is not straight.
   static const SolidStep& advance(SolidSet& solids, SolidWay way, const SolidStepOptions& options);
-  /// The separation of a solid from walls where the options give none, but for walls with shorter sides; 0: it has no side.
+  /// The separation of a solid from walls if the options give none, but for walls with shorter sides; 0: it has no side.
   static double separation(const SolidSet& solids, std::size_t solid);
   static constexpr double default_separation = 0x1p-10;  ///< of a side
   /// The report of the set's last step.
@@ -62,17 +62,17 @@ struct JointMoves {
 };
 
 /// A simplex that holds the end of a particle's straight way, border included, after the walls made theirs. `cell` holds
-/// its start. Throws InternalError where no cell on the way does. Precondition: the way is free, and cells stay positive.
+/// its start. Throws InternalError if no cell on the way does. Precondition: the way is free, and cells stay positive.
 SimplexId simplex_after(const CellComplex& complex, Cell cell, const Vec3& from, const Vec3& to,
                         const VertexMotion& walls, NearWalls& near);
 
-/// After the move: takes the particles to these places, on ways that are proved free. `simplices` hold the places; where
+/// After the move: takes the particles to these places, on ways that are proved free. `simplices` hold the places; if
 /// there are none, the ways are straight. Throws as simplex_after().
 void follow_move(Environment& environment, Particles& particles, std::span<const Vec3> to,
                  std::span<const SimplexId> simplices = {});
 
 /// Where its simplex carries a particle while the walls move: it keeps its weights there, so that it meets no wall. Its own
-/// place where that is out of the exact range.
+/// place if that is out of the exact range.
 Vec3 carried_by_cell(const CellComplex& complex, const ParticleState& state, const VertexMotion& walls);
 
 /// A share of a straight way, rounded.

@@ -66,7 +66,7 @@ std::pair<double, double> nearest_shares(const Points& a, const Points& b) {
 
 double longest_side(const Points& t) { return std::max({norm(t[1] - t[0]), norm(t[2] - t[1]), norm(t[0] - t[2])}); }
 
-// The normal at the time of the touch; 0 where the parts have none.
+// The normal at the time of the touch; 0 if the parts have none.
 Vec3 normal_at(const ElementTouch& touch, const Points& solid, const Points& wall) {
   const auto of_triangle = [](const Points& t) { return cross(t[1] - t[0], t[2] - t[0]); };
   switch (touch.kind) {
@@ -95,7 +95,7 @@ double height_over(const Vec3& normal, const Vec3& edge_point, const MovingTrian
   return height;
 }
 
-// Turns the normal of an edge-edge touch to be between those of the two wall triangles at the edge. Where it is not, as at
+// Turns the normal of an edge-edge touch to be between those of the two wall triangles at the edge. If it is not, as at
 // any edge that is not convex, the nearer of these takes its place. (Else a point that slides over the edges of a smooth
 // wall would catch on each.)
 void put_between_faces(SolidConstraint& c) {
@@ -116,7 +116,7 @@ Vec3 place_in(const SolidConstraint& c, std::span<const Vec3> positions) {
   return place;
 }
 
-// Where the parts have none, and lay on each other when the step began: the wall's, or else the one opposite to the motion.
+// If the parts have none, and lay on each other when the step began: the wall's, or else the one opposite to the motion.
 Vec3 any_normal(const ElementTouch& touch, const SolidMotion& motion) {
   const Vec3 of_wall = free_side(touch.wall.corners, touch.time);
   if (of_wall != Vec3{}) return of_wall;

@@ -23,7 +23,7 @@ struct SolidConstraint {
   bool is_exit = false;
 };
 
-/// `longest`: the longest side of the solid; 0 where it has none.
+/// `longest`: the longest side of the solid; 0 if it has none.
 SolidConstraint constraint_of(const ElementTouch& touch, const SolidMotion& motion, double separation, double longest);
 
 /// How much the targets lack.

@@ -9,9 +9,9 @@
 
 namespace dartcast {
 
-/// Why a solid is refused at these points, with walls as they stand; SolidRefusal::none where it is not, and
-/// cell_not_positive where there is no other reason. `cells`: the free
-/// cell of each point; invalid where there is none. Cost: some 2 us an element; for closed solids n log n.
+/// Why a solid is refused at these points, with walls as they stand; SolidRefusal::none if it is not, and
+/// cell_not_positive if there is no other reason. `cells`: the free
+/// cell of each point; invalid if there is none. Cost: some 2 us an element; for closed solids n log n.
 SolidPlacement find_refusal(const CellComplex& complex, std::span<const Vec3> points,
                             std::span<const SolidElement> elements, std::span<const Cell> cells);
 

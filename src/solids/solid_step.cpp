@@ -127,7 +127,7 @@ void SolidSet::Impl::start(SolidWay given, const SolidStepOptions& options, cons
   }
 }
 
-// At the end `open` has the solids whose way is still not free. Where a cell that becomes flat is all that is in a solid's
+// At the end `open` has the solids whose way is still not free. If a cell that becomes flat is all that is in a solid's
 // way, no correction helps.
 void SolidSet::Impl::correct_in_rounds(Solids& open, const VertexMotion& walls, const SolidStepOptions& options) {
   Solids not_helped;
@@ -189,7 +189,7 @@ void SolidSet::Impl::keep_first_touches(const Solids& cut, const SolidStepOption
   }
 }
 
-// Each solid stops by itself. At the end `open` has those that walls run into even where they stay.
+// Each solid stops by itself. At the end `open` has those that walls run into even if they stay.
 void SolidSet::Impl::cut_each(Solids& open, const VertexMotion& walls) {
   const double least = walls.at_rest() ? least_share : least_share_among_moving_walls;
   Solids squeezed;

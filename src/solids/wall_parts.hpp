@@ -21,7 +21,7 @@ class WallParts {
     std::array<std::uint32_t, 2> vertex{};  ///< sorted; both the same for a vertex
     std::uint32_t wall = 0;                 ///< in walls()
     std::uint8_t corner = 0;                ///< of the wall; an edge goes from it to the next
-    std::uint32_t beside = 0;               ///< the next wall that has it; the same where there is none
+    std::uint32_t beside = 0;               ///< the next wall that has it; the same if there is none
     Box way;
   };
 
