@@ -1,5 +1,5 @@
 // The part that meshes and surfaces in files share: nothing in a file throws, and a caller who asks for a valid one
-// gets the reason where it is not.
+// gets the reason if it is not.
 #pragma once
 
 #include <fmt/format.h>

@@ -16,15 +16,15 @@ namespace dartcast {
 /// count.
 class CsvTable {
  public:
-  /// Reads the first line. Throws Error where the file cannot be read, is empty, names a column twice, or may need more
+  /// Reads the first line. Throws Error if the file cannot be read, is empty, names a column twice, or may need more
   /// memory than `max_memory` (as in ReadOptions).
   explicit CsvTable(std::filesystem::path path, std::uint64_t max_memory = 0);
 
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   [[nodiscard]] bool has(std::string_view name) const;
-  /// The index of a column. Throws Error, with the columns that `needed` names, where it is missing.
+  /// The index of a column. Throws Error, with the columns that `needed` names, if it is missing.
   [[nodiscard]] std::size_t column(std::string_view name, std::string_view needed) const;
-  /// Reads the other lines: the numbers in these columns, one line after another. Throws Error, with the line, where
+  /// Reads the other lines: the numbers in these columns, one line after another. Throws Error, with the line, if
   /// one is no finite number.
   [[nodiscard]] std::vector<double> rows(std::span<const std::size_t> columns);
   /// Throws Error about the first line.

@@ -41,7 +41,7 @@ void add_dataset(const XmlTag& tag, const std::filesystem::path& folder, FieldSe
   series.times.push_back(time);
 }
 
-/// The series that has times of its own; no files where it has none.
+/// The series that has times of its own; no files if it has none.
 FieldSeries series_with_times(const NamedSeries& named) {
   const std::filesystem::path& first = named.files.front();
   if (named.files.size() != 1) return {};

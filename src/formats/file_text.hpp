@@ -9,20 +9,20 @@
 
 namespace dartcast {
 
-/// The size of a regular file; 0 where there is none.
+/// The size of a regular file; 0 if there is none.
 std::uint64_t file_bytes(const std::filesystem::path& path);
 
-/// All bytes of a regular file. Throws InvalidMesh where it cannot be read.
+/// All bytes of a regular file. Throws InvalidMesh if it cannot be read.
 std::string read_bytes(const std::filesystem::path& path);
 
 /// A number for these bytes (base/digest.hpp); 0 if there are none. Throws as read_bytes().
 std::uint64_t file_digest(const std::filesystem::path& path);
 
-/// Throws InvalidMesh where a regular file starts with zeros, so that a sparse file is not read for nothing. Its first
+/// Throws InvalidMesh if a regular file starts with zeros, so that a sparse file is not read for nothing. Its first
 /// 4096 bytes are looked at.
 void refuse_zeros(const std::filesystem::path& path);
 
-/// The content behind a byte-order mark of UTF-8. Throws InvalidMesh where it starts with one of UTF-16.
+/// The content behind a byte-order mark of UTF-8. Throws InvalidMesh if it starts with one of UTF-16.
 std::string_view without_byte_order_mark(std::string_view content);
 
 bool is_space(char c);
@@ -41,7 +41,7 @@ class FileText {
  public:
   explicit FileText(std::string_view text) : text_(text) {}
 
-  /// Skips white space and comments that run from `comment` to the end of the line; true where nothing is left.
+  /// Skips white space and comments that run from `comment` to the end of the line; true if nothing is left.
   bool at_end();
   void set_comment(char c) { comment_ = c; }
 
@@ -60,12 +60,12 @@ class FileText {
   Real number(std::string_view what);
   /// A count of items that take at least `bytes_each` bytes each in the rest of the file.
   std::size_t count(std::string_view what, std::size_t bytes_each);
-  /// Throws where `n` items cannot fit into the rest of the file.
+  /// Throws if `n` items cannot fit into the rest of the file.
   void check_count(std::string_view what, std::uint64_t n, std::size_t bytes_each) const;
 
   /// The next n bytes as they are.
   std::string_view raw(std::size_t n, std::string_view what);
-  /// Moves behind the next occurrence of `mark`; throws where there is none.
+  /// Moves behind the next occurrence of `mark`; throws if there is none.
   void skip_past(std::string_view mark);
 
   [[nodiscard]] std::size_t position() const { return position_; }

@@ -15,7 +15,7 @@
 
 namespace dartcast {
 
-/// An ending, with its dot, in lower case, and the function that writes such files; null where none does.
+/// An ending, with its dot, in lower case, and the function that writes such files; null if none does.
 struct FormatEnding {
   std::string_view ending;
   void (*write)(const MeshData& mesh, const std::filesystem::path& file);
@@ -42,7 +42,7 @@ struct SurfaceFormat {
 std::span<const MeshFormat> mesh_formats();
 std::span<const SurfaceFormat> surface_formats();
 
-/// The format of a path's ending; none where the table has no such ending.
+/// The format of a path's ending; none if the table has no such ending.
 const MeshFormat* mesh_format_of(const std::filesystem::path& path);
 const SurfaceFormat* surface_format_of(const std::filesystem::path& path);
 /// The function that writes files of a path's ending; none likewise.

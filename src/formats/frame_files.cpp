@@ -1,4 +1,4 @@
-// Reads frames from mesh files. Only the first is checked as a whole mesh where the others have the same cells.
+// Reads frames from mesh files. Only the first is checked as a whole mesh if the others have the same cells.
 #include "formats/frame_files.hpp"
 
 #include <fmt/format.h>
@@ -97,7 +97,7 @@ class FrameFiles {
     return read_vtu_points(read_bytes(file), options_.max_memory);
   }
 
-  // The points of a file with the cells of the first; none where it must be checked as a mesh of its own. This second reading
+  // The points of a file with the cells of the first; none if it must be checked as a mesh of its own. This second reading
   // finds the words for what is wrong with it.
   [[nodiscard]] std::optional<std::vector<Vec3>> read_same_cells(const fs::path& file) const {
     if (!first_cells_) return std::nullopt;

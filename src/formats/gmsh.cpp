@@ -79,7 +79,7 @@ void read_elements(NumberReader& in, Model& model, Version version) {
   }
 }
 
-/// Reads the section `name`; false where this library does not use it: then the caller skips it.
+/// Reads the section `name`; false if this library does not use it: then the caller skips it.
 bool read_section(std::string_view name, NumberReader& in, Model& model, Version& version) {
   if (name == "NOD" || name == "ELM") {
     version = Version::v1;

@@ -10,7 +10,7 @@ namespace dartcast {
 
 /// Physical groups of volumes become regions, those of surfaces patches, with their names; in a file without volumes
 /// those of surfaces and curves. An element in several groups goes to the first; points are left out. Throws
-/// InvalidMesh with the line (or byte) where the content is not right, or with the name of another format.
+/// InvalidMesh with the line (or byte) if the content is not right, or with the name of another format.
 ParsedMesh parse_gmsh(std::string_view content, bool linearise = false);
 
 /// The mesh in version 2.2 or 4.1, ASCII, every coordinate with the digits it needs to be read back exactly. Regions

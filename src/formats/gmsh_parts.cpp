@@ -68,7 +68,7 @@ std::uint32_t NodeTable::find(std::uint64_t number) const {
 
 namespace {
 
-// Gmsh's element types by number, from 0 on (GmshDefines.h): 0 where there is none, or none with a fixed number of
+// Gmsh's element types by number, from 0 on (GmshDefines.h): 0 if there is none, or none with a fixed number of
 // nodes.
 constexpr std::array<int, 141> node_counts = {
     0,  2,   3,   4,   4,   8,   6,   5,   3,   6,   9,   10,  27,  18,  14,  1,   8,   20,  15,   13,  //

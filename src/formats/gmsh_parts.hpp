@@ -39,7 +39,7 @@ class NumberReader {
 class NodeTable {
  public:
   void add(std::uint64_t number, const Vec3& point, MeshData& mesh);
-  /// To be called once after all nodes. Throws InvalidMesh where a number occurs twice.
+  /// To be called once after all nodes. Throws InvalidMesh if a number occurs twice.
   void close();
   [[nodiscard]] bool closed() const { return closed_; }
   /// The point's index, or no_point.
@@ -53,7 +53,7 @@ class NodeTable {
 
 /// Number of nodes of an element type of any order; 0 for an unknown type, and for one without a fixed number.
 int node_count(int type);
-/// The same. Throws InvalidMesh with the line where it is 0.
+/// The same. Throws InvalidMesh with the line if it is 0.
 int known_node_count(const NumberReader& in, int type);
 
 /// The result that the sections fill.

@@ -9,7 +9,7 @@
 namespace dartcast {
 
 /// References of volume cells become regions, those of triangles and quadrilaterals patches (0: none); in a file
-/// without volume cells those of triangles and quadrilaterals, and of edges. Throws InvalidMesh with the line where the
+/// without volume cells those of triangles and quadrilaterals, and of edges. Throws InvalidMesh with the line if the
 /// content is not right, or with the name of another format.
 ParsedMesh parse_medit(std::string_view content, bool linearise = false);
 

@@ -30,7 +30,7 @@ void read_off_header(FileText& text, ParsedSurface& surface) {
   if (text.peek() == "BINARY") text.fail("binary OFF is not supported; write it in ASCII, or as .ply");
 }
 
-/// Throws where the line has ended: the number is missing, and the next line's must not take its place.
+/// Throws if the line has ended: the number is missing, and the next line's must not take its place.
 void expect_off_number(const FileText& text) {
   if (text.line_ends()) text.fail("the line ends too early: a vertex or face has all of its numbers on one line");
 }

@@ -14,7 +14,7 @@
 namespace dartcast {
 
 /// Whether the path is a case, or a part of one: its folder, a file in it that ends in .foam, a polyMesh folder, or
-/// CASE/TIME, which need not exist where the processors' folders have it.
+/// CASE/TIME, which need not exist if the processors' folders have it.
 bool is_openfoam(const std::filesystem::path& path);
 
 /// Whether the path is a case itself: its folder, or a file in it that ends in .foam.
@@ -27,12 +27,12 @@ inline const std::string unread_field = "field ";
 /// points of that time, and with its fields at cells and points as arrays. Zones of cells become regions. Patches keep
 /// their names; so do zones of faces, for faces that are in no patch. A mesh of one layer between patches of the type
 /// `empty` becomes a mesh of the plane. Cells and faces keep their labels as sources. A field that
-/// cannot be read is left out, which is a warning. Throws InvalidMesh, with file and line, or byte, where the content is
+/// cannot be read is left out, which is a warning. Throws InvalidMesh, with file and line, or byte, if the content is
 /// not right or cannot be used.
 ParsedMesh parse_openfoam(const std::filesystem::path& path, const ReadOptions& options);
 
 /// The times of a case with points, as paths CASE/TIME; before them CASE/constant at 0 if no other is at 0 or before.
-/// Throws InvalidMesh where there is none, or the mesh changes its faces at a time.
+/// Throws InvalidMesh if there is none, or the mesh changes its faces at a time.
 FieldSeries openfoam_points(const std::filesystem::path& path);
 
 /// The times of a case with a field, as paths CASE/TIME. Throws likewise.
@@ -41,7 +41,7 @@ FieldSeries openfoam_field(const std::filesystem::path& path, std::string_view f
 /// The points of CASE/TIME in a mesh of space, by label, as the file has them. Throws as parse_openfoam().
 std::vector<Vec3> openfoam_points_at(const std::filesystem::path& path, const ReadOptions& options);
 
-/// A vector field at the cells of CASE/TIME, by label. Throws likewise, and where there is none or it has not as many
+/// A vector field at the cells of CASE/TIME, by label. Throws likewise, and if there is none or it has not as many
 /// values.
 std::vector<Vec3> openfoam_cell_vectors(const std::filesystem::path& path, std::string_view field, std::size_t cells,
                                         const ReadOptions& options);

@@ -26,15 +26,15 @@ struct ParsedSurface {
   Finding short_faces{"short_faces", 0, {}, "faces of one or two corners; they have been left out"};
 
   /// Adds a face of 3 to 1000 corners; a face of one or two is left out. Throws InvalidMesh with the line, or with
-  /// the byte in binary parts, where it has none or more, or where there are too many faces.
+  /// the byte in binary parts, if it has none or more, or if there are too many faces.
   void add_face(std::span<const std::uint32_t> corners, const FileText& text, bool binary = false);
-  /// Throws InvalidMesh, likewise, where a coordinate is not finite or there are too many points.
+  /// Throws InvalidMesh, likewise, if a coordinate is not finite or there are too many points.
   void add_point(const Vec3& point, const FileText& text, bool binary = false);
   /// Faces that follow are in the region of this name (without the white space around it); with an empty one in none.
   void enter_region(std::string_view name);
-  /// Counts one more place where the file is not written as the format says.
+  /// Counts one more place if the file is not written as the format says.
   void warn(std::string_view message);
-  /// To be called at the end: without a region regions stay empty. Throws InvalidMesh where there is no face.
+  /// To be called at the end: without a region regions stay empty. Throws InvalidMesh if there is no face.
   void finish();
 
  private:

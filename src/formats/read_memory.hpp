@@ -36,7 +36,7 @@ std::uint64_t memory_of_mesh(const MeshData& mesh);
 /// The limit that is meant: 0 is half of the machine's memory.
 std::uint64_t allowed_memory(std::uint64_t limit);
 
-/// Throws InvalidMesh, with both numbers and the remedy, where `bytes` is more than the limit; 0: half of the machine's
+/// Throws InvalidMesh, with both numbers and the remedy, if `bytes` is more than the limit; 0: half of the machine's
 /// memory.
 void check_memory(std::uint64_t bytes, std::uint64_t limit);
 

@@ -8,9 +8,9 @@
 
 namespace dartcast {
 
-/// Reads .csv, with the columns x, y, z and, where the file gives them, vx, vy, vz and radius; or .vtp, with the
+/// Reads .csv, with the columns x, y, z and, if the file gives them, vx, vy, vz and radius; or .vtp, with the
 /// points' arrays velocity (of 3 components) and radius. Other arrays of a run's frames are skipped: id, cell, kind,
-/// contacts, held. Only the option `max_memory` has an effect. Throws Error, with the file, where another column or
+/// contacts, held. Only the option `max_memory` has an effect. Throws Error, with the file, if another column or
 /// array is in it, or a value is out of range.
 ParticleSeeds read_seeds(const std::filesystem::path& path, const ReadOptions& options = {});
 

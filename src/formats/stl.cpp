@@ -82,7 +82,7 @@ void expect_stl_end(FileText& text, std::string_view what, ParsedSurface& surfac
   surface.warn(fmt::format("'end {0}' stands in place of 'end{0}'", what));
 }
 
-/// The end of a solid, to the end of its line. None where a facet follows.
+/// The end of a solid, to the end of its line. None if a facet follows.
 bool take_stl_end(FileText& text, ParsedSurface& surface) {
   const std::string word = in_lower_case(text.peek());
   if (word == "end") {

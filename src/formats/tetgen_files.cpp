@@ -116,7 +116,7 @@ class TetgenReader {
   std::int64_t first_ = 0;
 };
 
-/// The other file, or none where it may be missing.
+/// The other file, or none if it may be missing.
 std::string beside(std::filesystem::path path, const char* ending, bool needed, const ReadOptions& options) {
   path.replace_extension(ending);
   if (!needed && file_bytes(path) == 0) return {};

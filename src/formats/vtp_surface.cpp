@@ -33,7 +33,7 @@ std::vector<fs::path> files_in(const fs::path& folder, std::string_view ending) 
   return files;
 }
 
-/// The .vtu file of the mesh; none where there is no such file, or several.
+/// The .vtu file of the mesh; none if there is no such file, or several.
 fs::path mesh_file(const fs::path& folder) {
   for (const char* ending : {".mesh.vtu", ".vtu"}) {
     const std::vector<fs::path> found = files_in(folder, ending);
@@ -61,7 +61,7 @@ class MeshPoints {
     for (std::uint32_t p = 0; p < ids->values.size(); ++p) by_id_[ids->values[p]] = p;
   }
 
-  /// Places may be rounded where there are numbers. Throws InvalidMesh where the two name different points.
+  /// Places may be rounded if there are numbers. Throws InvalidMesh if the two name different points.
   [[nodiscard]] std::uint32_t find(const VtpFaces& faces, std::uint32_t point) const {
     if (point >= faces.points.size()) return no_point;
     const Vec3& x = faces.points[point];

@@ -20,7 +20,7 @@ class VtpFile {
 
   /// Makes every point visible.
   void add_vertices();
-  /// A line through all points in their order, where there are any.
+  /// A line through all points in their order, if there are any.
   void add_line();
   /// Polygons: corners of one after the other, polygon i from offsets[i] to offsets[i + 1].
   void add_polygons(std::span<const std::size_t> offsets, std::span<const std::uint32_t> corners);

@@ -53,7 +53,7 @@ void write_beside(const fs::path& path, Write&& write) {
   }
 }
 
-/// Throws InvalidArgument where the format has no place for a cell, a face or a baffle.
+/// Throws InvalidArgument if the format has no place for a cell, a face or a baffle.
 void check_cells(const MeshData& mesh, const MeshFormat& format) {
   if (format.polyhedra) return;
   if (!mesh.baffle_tags.empty())

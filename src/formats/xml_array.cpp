@@ -25,7 +25,7 @@ std::size_t pack(std::string_view block, Compression compression, Packed& out) {
   uLongf size = out.size();
   if (::compress2(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(block.data()),
                   block.size(), Z_DEFAULT_COMPRESSION) != Z_OK)
-    throw std::bad_alloc();  // the only way to fail where the bound is kept
+    throw std::bad_alloc();  // the only way to fail if the bound is kept
   return size;
 }
 

@@ -60,7 +60,7 @@ class XmlArray {
 
   /// Keeps the block that is made first: for arrays that stand in many files, all of one compression.
   void keep() { kept_ = std::make_shared<std::shared_ptr<const XmlBlock>>(); }
-  /// Where it is kept, one thread at a time may call this. Cost: that of the compression.
+  /// If it is kept, one thread at a time may call this. Cost: that of the compression.
   [[nodiscard]] std::shared_ptr<const XmlBlock> block(Compression compression) const;
 
  private:

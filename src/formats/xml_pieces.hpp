@@ -8,7 +8,7 @@
 
 namespace dartcast {
 
-/// The files of the pieces, in the folder of the file at `path` or in one within it. Throws InvalidMesh, with the line, where
+/// The files of the pieces, in the folder of the file at `path` or in one within it. Throws InvalidMesh, with the line, if
 /// the text is no XML of this kind, or one does not have this ending or is in another folder.
 std::vector<std::filesystem::path> named_pieces(const std::filesystem::path& path, const std::string& text,
                                                 std::string_view ending);

@@ -16,14 +16,14 @@ struct XmlTag {
   std::size_t end = 0;  ///< the byte after it
   std::size_t line = 0;
 
-  /// An attribute, or another text where there is none.
+  /// An attribute, or another text if there is none.
   [[nodiscard]] std::string attribute(const std::string& key, const std::string& otherwise) const;
   /// Throws InvalidMesh with the tag's line.
   [[noreturn]] void fail(std::string_view message) const;
 };
 
 /// Calls visit(tag) for each tag; <name/> is two. The bytes between <AppendedData ...> and the last </AppendedData> need
-/// not be XML, and are left out. Throws InvalidMesh, with the line, where the rest is not well-formed, has a document type,
+/// not be XML, and are left out. Throws InvalidMesh, with the line, if the rest is not well-formed, has a document type,
 /// because its entities would give the file a second meaning, or nests tags more than 64 deep; and as visit().
 void read_xml(std::string_view content, const std::function<void(const XmlTag&)>& visit);
 

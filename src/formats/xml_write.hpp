@@ -34,7 +34,7 @@ struct XmlDataSet {
 /// write_pieces() or replace_file().
 using WritePieces = void (*)(const std::filesystem::path& path, std::span<const std::string_view> pieces);
 
-/// Throws Error where the file cannot be written.
+/// Throws Error if the file cannot be written.
 void write_xml(const std::filesystem::path& path, const XmlDataSet& data, Compression compression, WritePieces write);
 
 /// A data set of several pieces, in files of their own that hold the same arrays as `data`. `pieces`: their names, from

@@ -25,7 +25,7 @@ namespace {
 /// The pairs of triangles that are looked for at most.
 constexpr std::size_t most_pairs = 10000;
 
-/// The same surface in triangles, each with its face's number in the file; none where a face names no point.
+/// The same surface in triangles, each with its face's number in the file; none if a face names no point.
 MeshData in_triangles(MeshData mesh) {
   const auto known = [&](std::uint32_t p) { return p < mesh.points.size(); };
   if (!std::all_of(mesh.connectivity.begin(), mesh.connectivity.end(), known)) return mesh;
@@ -42,7 +42,7 @@ MeshData in_triangles(MeshData mesh) {
   return out;
 }
 
-/// Points at one place become one where that is asked for: .stl has no numbers, other formats mean what they say.
+/// Points at one place become one if that is asked for: .stl has no numbers, other formats mean what they say.
 MeshFile read_one(const std::filesystem::path& file, const SurfaceScene& scene, const ReadOptions& options) {
   return checked_file(file, "surface", [&](MeshFile& out) {
     ParsedSurface parsed = parse_surface(file, options.max_memory);
@@ -58,7 +58,7 @@ MeshFile read_one(const std::filesystem::path& file, const SurfaceScene& scene, 
   });
 }
 
-/// Divides triangles at edges where their normals differ by more than an angle. The part of each, in the order of its
+/// Divides triangles at edges if their normals differ by more than an angle. The part of each, in the order of its
 /// first triangle.
 std::vector<std::uint32_t> smooth_parts(const MeshData& mesh, double degrees) {
   const std::size_t n = mesh.cell_count();

@@ -26,7 +26,7 @@ struct ClosedSurfaces {
   MeshReport report;                  ///< closed and free of crossings if it is valid
 };
 
-/// Reads the files, cuts polygons into triangles, orients these, closes flat holes where the scene wants it, and checks
+/// Reads the files, cuts polygons into triangles, orients these, closes flat holes if the scene wants it, and checks
 /// all. Nothing in the files makes this throw.
 ClosedSurfaces read_closed_surfaces(const SurfaceScene& scene, const ReadOptions& options);
 

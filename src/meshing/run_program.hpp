@@ -12,7 +12,7 @@ namespace dartcast {
 struct ProgramEnd {
   bool found = true;       ///< whether there is such a program
   bool in_time = true;     ///< false: it was stopped
-  int status = 0;          ///< its exit status; 128 and its signal where one ended it
+  int status = 0;          ///< its exit status; 128 and its signal if one ended it
   std::string last_words;  ///< the end of its output, for messages
   [[nodiscard]] bool well() const { return found && in_time && status == 0; }
 };
@@ -21,7 +21,7 @@ struct ProgramEnd {
 /// process if a signal ends it before. A small process of its own waits for that.
 class TemporaryFolder {
  public:
-  /// Throws Error where none can be made.
+  /// Throws Error if none can be made.
   TemporaryFolder();
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;
@@ -37,7 +37,7 @@ class TemporaryFolder {
 };
 
 /// Runs words[0], found as a shell finds it, with the other words. Its output goes to a file in the folder. It is stopped
-/// after so many seconds, and cannot take more memory than so many bytes. Throws Error where no process can be made.
+/// after so many seconds, and cannot take more memory than so many bytes. Throws Error if no process can be made.
 ProgramEnd run_program(const std::vector<std::string>& words, const TemporaryFolder& folder, double seconds,
                        std::uint64_t memory);
 

@@ -24,12 +24,12 @@ struct Tetrahedra {
   std::vector<std::array<std::uint32_t, 4>> cells;
 };
 
-/// Throws Error with the reason where a program is missing, fails, takes too long, or does not keep the points.
+/// Throws Error with the reason if a program is missing, fails, takes too long, or does not keep the points.
 Tetrahedra run_tetgen(const ClosedSurfaces& surfaces, const SurfaceScene& scene, std::uint64_t memory);
 Tetrahedra run_gmsh(const ClosedSurfaces& surfaces, const SurfaceScene& scene, std::uint64_t memory);
 
 /// The mesh with regions, patches and free cells. A region follows from the triangles that lie between it and the box.
-/// Throws Error where a triangle is not a face of two tetrahedra, the surface leaks, a region is missing, or a volume
+/// Throws Error if a triangle is not a face of two tetrahedra, the surface leaks, a region is missing, or a volume
 /// differs.
 MeshData mesh_with_regions(const ClosedSurfaces& surfaces, const SurfaceScene& scene, Tetrahedra tetrahedra);
 

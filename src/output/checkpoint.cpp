@@ -49,7 +49,7 @@ class CheckpointWriter {
     count(size);
     text_ += s;
   }
-  // Whether there is a last part, which is left out where nothing is in it.
+  // Whether there is a last part, which is left out if nothing is in it.
   static bool has_more(bool filled) { return filled; }
   [[nodiscard]] const std::string& text() const { return text_; }
 
@@ -274,7 +274,7 @@ void fields(Archive& a, ResidenceTimes& t) {
 
 bool has_statistics(const StatisticsState& s) { return s.has_hits || s.observes_motion; }
 
-// Nothing where there are no statistics.
+// Nothing if there are no statistics.
 template <class Archive>
 void fields(Archive& a, StatisticsState& s) {
   if (!a.has_more(has_statistics(s))) return;

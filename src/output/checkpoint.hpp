@@ -1,4 +1,4 @@
-// Where a run can go on from: checkpoint.bin in its output folder; and, where ranks share the particles, a part for each
+// Where a run can go on from: checkpoint.bin in its output folder; and, if ranks share the particles, a part for each
 // of the others, written before it.
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace dartcast {
 
-/// The run that a state belongs to: it can go on only where all of this is the same.
+/// The run that a state belongs to: it can go on only if all of this is the same.
 struct RunIdentity {
   std::string version;      ///< of the library: other versions may round elsewhere
   std::uint64_t scene = 0;  ///< digest of the scene's text
@@ -38,18 +38,18 @@ struct Checkpoint {
 };
 
 /// Writes the file beside its place and then puts it there: whenever a run is cut off, a whole checkpoint is left.
-/// Throws Error where it cannot be written. `checkpoint`: stays as it is, although the list of its fields, which is one
+/// Throws Error if it cannot be written. `checkpoint`: stays as it is, although the list of its fields, which is one
 /// for reading and writing, does not say so.
 void write_checkpoint(const std::filesystem::path& path, Checkpoint& checkpoint);
 
 /// Writes what a rank but the first adds to the checkpoint: its particles and their sums. Returns the file's digest.
-/// Throws Error where it cannot be written.
+/// Throws Error if it cannot be written.
 std::uint64_t write_checkpoint_part(const std::filesystem::path& path, ParticleSystemState& part);
 
-/// Throws Error where there is no such file, or it is damaged or has another digest.
+/// Throws Error if there is no such file, or it is damaged or has another digest.
 ParticleSystemState read_checkpoint_part(const std::filesystem::path& path, std::uint64_t digest);
 
-/// None where there is no such file. Throws Error where it is damaged, or of a run that differs from `run`: says in
+/// None if there is no such file. Throws Error if it is damaged, or of a run that differs from `run`: says in
 /// what.
 std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& path, const RunIdentity& run);
 

@@ -14,7 +14,7 @@
 
 namespace dartcast {
 
-/// A point or cell array of a mesh. Ranges are of its finite values, per component; empty where there is none.
+/// A point or cell array of a mesh. Ranges are of its finite values, per component; empty if there is none.
 struct ArrayInfo {
   std::string name;
   std::size_t components = 1;
@@ -34,13 +34,13 @@ struct MeshInfo {
   std::size_t points = 0;
   std::map<std::string, std::size_t> cells;    ///< by type
   std::map<std::string, std::size_t> regions;  ///< by name, or tag
-  std::map<std::string, std::size_t> patches;  ///< wall faces by patch, where there is one; in the plane all edges
+  std::map<std::string, std::size_t> patches;  ///< wall faces by patch, if there is one; in the plane all edges
   std::map<std::string, PatchPlace> patch_places;
   std::size_t free_cells = 0;
   std::size_t wall_faces = 0;
   std::size_t shapes = 0;  ///< kinds of cell that the map distinguishes
   std::uint64_t simplices = 0;
-  std::size_t steiner_points = 0;  ///< added where a cell needs one
+  std::size_t steiner_points = 0;  ///< added if a cell needs one
   Vec3 low, high;                  ///< of the points
   std::size_t bytes = 0;           ///< of the map, its positions and tables
   std::vector<ArrayInfo> point_arrays;
@@ -51,7 +51,7 @@ struct MeshInfo {
 };
 
 /// Precondition: check_and_repair() found the mesh valid. Builds the complex of a mesh of space. Throws InvalidMesh
-/// where that is not possible.
+/// if that is not possible.
 MeshInfo mesh_info(const MeshData& mesh, std::string name, Threads threads = {});
 
 std::string info_json(const MeshInfo& info);

@@ -17,7 +17,7 @@ namespace dartcast {
 /// bytes for each point.
 class PathlinesBuilder {
  public:
-  /// Throws Error where there are more points than a file can number (2^32 - 1).
+  /// Throws Error if there are more points than a file can number (2^32 - 1).
   void add(const PathPoint& point);
   /// Precondition: it is called once.
   VtpFile file();
@@ -39,7 +39,7 @@ inline constexpr std::string_view pathlines_header = "dartcast pathlines 1";
 /// A point as bytes of this machine's kind.
 std::string packed(const PathPoint& point);
 
-/// The lines of a file of packed points. Throws Error where it cannot be read or is none.
+/// The lines of a file of packed points. Throws Error if it cannot be read or is none.
 VtpFile read_packed_pathlines(const std::filesystem::path& path);
 
 }  // namespace dartcast

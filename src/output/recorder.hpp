@@ -50,7 +50,7 @@ struct RunFolder {
   std::filesystem::path path;
   const FilesProgress* before = nullptr;  ///< none: the run starts anew
 
-  /// A new table, or the one of the run before. Throws Error where that is shorter than it was.
+  /// A new table, or the one of the run before. Throws Error if that is shorter than it was.
   [[nodiscard]] RunTable table(std::string_view name, std::string_view header,
                                std::uint64_t FilesProgress::*bytes) const {
     return before != nullptr ? RunTable(path / name, before->*bytes) : RunTable(path / name, header);

@@ -11,8 +11,8 @@
 
 namespace dartcast {
 
-/// Writes particles.pvd with a .vtp per frame, environment.pvd with a .vtu per frame (one where nothing changes),
-/// stats.csv, contacts.csv on request, and scene.toml. Where ranks share the particles, it is the first rank's, and a frame
+/// Writes particles.pvd with a .vtp per frame, environment.pvd with a .vtu per frame (one if nothing changes),
+/// stats.csv, contacts.csv on request, and scene.toml. If ranks share the particles, it is the first rank's, and a frame
 /// is made of the pieces that all have written.
 class Recording final : public Recorder {
  public:
@@ -22,11 +22,11 @@ class Recording final : public Recorder {
     bool contacts = false;
     Compression compression = Compression::none;
     std::uint32_t pieces = 1;              ///< of a frame of particles: one for each rank
-    std::uint32_t environment_pieces = 1;  ///< of a frame of the environment, where ranks have parts of it
+    std::uint32_t environment_pieces = 1;  ///< of a frame of the environment, if ranks have parts of it
   };
 
   /// Makes the folder, or takes over one that is empty or holds an earlier run, whose files are removed. Throws Error,
-  /// nothing changed, where the folder holds anything else. `environment`: at rest; where frames show it, its owner lets
+  /// nothing changed, if the folder holds anything else. `environment`: at rest; if frames show it, its owner lets
   /// it follow edits and cells, and else it is taken.
   ///
   /// A run that goes on takes back what was written after its progress. `environment` has followed the edits so far.
@@ -59,7 +59,7 @@ XmlDataSet write_environment(WritingThread& writing, const std::filesystem::path
 /// why not.
 void check_output_folder(const std::filesystem::path& folder);
 
-/// Makes it where it does not exist. Throws Error where that fails.
+/// Makes it if it does not exist. Throws Error if that fails.
 void make_output_folder(const std::filesystem::path& folder);
 
 }  // namespace dartcast

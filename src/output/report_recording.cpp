@@ -83,7 +83,7 @@ std::vector<RecordedPoint> recorded(std::span<const Vec3> points, const Recorded
   return out;
 }
 
-// A body's skin as triangles where it has one, else its particles.
+// A body's skin as triangles if it has one, else its particles.
 RecordedSolid recorded_body(const Simulation& simulation, std::size_t b, const RecordedHeader& header) {
   const BodiesComponent& component = view_of(simulation).bodies;
   const Bodies& bodies = *component.bodies();
@@ -154,7 +154,7 @@ ReportRecording::ReportRecording(const RunFolder& run, const Scene& scene, const
   add_arrivals(simulation, simulation.time());
 }
 
-// Where the run goes on, a last frame off the schedule is cut off, and so are walls that came with it. Its hits count.
+// If the run goes on, a last frame off the schedule is cut off, and so are walls that came with it. Its hits count.
 void ReportRecording::restore(const fs::path& path, const Simulation& simulation, bool goes_on) {
   const RecordedFile file(path);
   header_ = file.header();

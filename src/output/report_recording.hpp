@@ -51,7 +51,7 @@ class ReportRecording final : public Recorder {
   RunTable file_;
   RecordedHeader header_;
   std::uint64_t stride_ = 1;
-  WallHits own_hits_;  // where the simulation keeps none
+  WallHits own_hits_;  // if the simulation keeps none
   bool counts_hits_;
   std::uint64_t counted_;  // steps whose hits it has
   bool has_walls_ = false;

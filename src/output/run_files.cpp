@@ -40,7 +40,7 @@ bool is_step(std::string_view text) {
   return text.size() >= 6 && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-// The digits of the step in the name of a frame's file of the series; empty where it is none.
+// The digits of the step in the name of a frame's file of the series; empty if it is none.
 std::string_view step_digits(std::string_view name, const Series& series) {
   if (!name.starts_with(series.start) || !name.ends_with(series.end)) return {};
   if (name.size() < series.start.size() + series.end.size()) return {};

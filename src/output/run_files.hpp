@@ -22,7 +22,7 @@ struct RecordingFrame {
   std::uint64_t step = 0;
   double time = 0.0;                     ///< s
   std::uint32_t pieces = 1;              ///< files of particles: one of each rank
-  std::uint32_t environment_pieces = 1;  ///< of the environment, where it is spread
+  std::uint32_t environment_pieces = 1;  ///< of the environment, if it is spread
 };
 
 /// The mesh that was made around a scene's surfaces. A run that starts anew leaves it where it is.
@@ -34,13 +34,13 @@ inline constexpr std::string_view replay_name = "replay.json";
 /// Whether a file is one that a run writes, or began to write and did not end: by its name.
 bool is_run_file(std::string_view name);
 
-/// The step of a frame's file, by its name; none where it is no frame's.
+/// The step of a frame's file, by its name; none if it is no frame's.
 std::optional<std::uint64_t> frame_step(std::string_view name);
 
 /// Where a rank but the first leaves its part of a checkpoint: checkpoint_000010.2.bin.
 std::string checkpoint_part_name(std::uint64_t step, unsigned rank);
 
-/// The step of such a part, by its name; none where it is none.
+/// The step of such a part, by its name; none if it is none.
 std::optional<std::uint64_t> checkpoint_part_step(std::string_view name);
 
 /// Piece 2 of the series "particles" at step 10, ".vtp": particles_000010.2.vtp.
@@ -63,9 +63,9 @@ void keep_in_pvd(const std::filesystem::path& path, const std::set<std::uint64_t
 class RunTable {
  public:
   RunTable() = default;
-  /// A new file, at once. Throws Error where it cannot be written.
+  /// A new file, at once. Throws Error if it cannot be written.
   RunTable(std::filesystem::path path, std::string_view header);
-  /// Goes on behind its first `bytes` bytes. Throws Error where it is shorter.
+  /// Goes on behind its first `bytes` bytes. Throws Error if it is shorter.
   RunTable(std::filesystem::path path, std::uint64_t bytes);
 
   [[nodiscard]] bool is_open() const { return !path_.empty(); }
@@ -74,10 +74,10 @@ class RunTable {
     fmt::format_to(std::back_inserter(rows_), form, std::forward<Values>(values)...);
   }
   void append(std::string_view bytes) { rows_ += bytes; }
-  /// Leaves the rows to the thread. Returns the file's length when all that were sent are in it; 0 where there is no
+  /// Leaves the rows to the thread. Returns the file's length when all that were sent are in it; 0 if there is no
   /// table.
   std::uint64_t send(WritingThread& writing);
-  /// The same, where they are many.
+  /// The same, if they are many.
   void send_many(WritingThread& writing);
 
  private:

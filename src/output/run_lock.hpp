@@ -16,8 +16,8 @@ class RunLock {
   /// Removes the file.
   ~RunLock();
 
-  /// Takes the folder, which exists; nothing happens where it is held already. Throws Error with the process that holds
-  /// it, or where the file cannot be written.
+  /// Takes the folder, which exists; nothing happens if it is held already. Throws Error with the process that holds
+  /// it, or if the file cannot be written.
   void take(const std::filesystem::path& folder);
 
  private:

@@ -1,6 +1,6 @@
 // Opens, fills and closes the output folder of a run.
 //
-// Where ranks share the particles, all make the same calls. The first writes all files but the pieces and parts that hold
+// If ranks share the particles, all make the same calls. The first writes all files but the pieces and parts that hold
 // the others' particles; each of these writes its own, and the first names them once they are whole.
 #include "output/run_output.hpp"
 

@@ -21,9 +21,9 @@
 
 namespace dartcast {
 
-/// Without a folder it does nothing. Every function throws Error where a file cannot be read or written; frames, tables
+/// Without a folder it does nothing. Every function throws Error if a file cannot be read or written; frames, tables
 /// and checkpoints are written by a thread, and the next function throws its errors. The order is that of the calls, and
-/// a checkpoint comes after all that it counts on: a run that is cut off anywhere can go on. Where ranks share the
+/// a checkpoint comes after all that it counts on: a run that is cut off anywhere can go on. If ranks share the
 /// particles, each has one, and every function is collective.
 class RunOutput {
  public:
@@ -42,7 +42,7 @@ class RunOutput {
   void add_step(const Simulation& simulation, const SimulationStep& step);
   /// Whether the scene wants a frame after this step.
   [[nodiscard]] bool on_schedule(std::uint64_t step) const { return every_ > 0 && step % every_ == 0; }
-  /// Before the first step and after each: a frame and a checkpoint where the scene wants one, and for the last step.
+  /// Before the first step and after each: a frame and a checkpoint if the scene wants one, and for the last step.
   void add_frame(const Simulation& simulation, bool last);
   void finish(const Simulation& simulation);
 

@@ -44,7 +44,7 @@ void describe(const Environment& environment, Summary& summary) {
   summary.patch_names = map.patch_names();
 }
 
-// Where ranks have parts of the environment: the cells of each count once, and so does what belongs to the lowest of them.
+// If ranks have parts of the environment: the cells of each count once, and so does what belongs to the lowest of them.
 void describe_parts(const Simulation& simulation, Summary& summary) {
   const PartCells& part = view_of(simulation).part->cells();
   const CombinatorialMap& map = simulation.environment().map();
@@ -111,7 +111,7 @@ class Run {
   }
 
  private:
-  // Where all ranks do.
+  // If all ranks do.
   [[nodiscard]] bool goes_on(bool own) const {
     std::uint64_t stops = own ? 0 : 1;
     sum_over(simulation_.options().ranks, {&stops, 1});
@@ -169,7 +169,7 @@ std::unique_ptr<Simulation> make_simulation(const Scene& scene, RunOutput& outpu
   return std::make_unique<Simulation>(scene, saved, options.threads, follow, options.ranks, options.partition);
 }
 
-// Where a program makes a mesh around surfaces, the first rank has it made, and the others find it in the folder.
+// If a program makes a mesh around surfaces, the first rank has it made, and the others find it in the folder.
 LoadedScene loaded_scene(Scene scene, const ReadOptions& read, const RunOptions& options) {
   if (options.partition == Partition::cells && are_several(options.ranks))
     return load_scene_part(std::move(scene), *options.ranks, read, options.threads);

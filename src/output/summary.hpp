@@ -9,7 +9,7 @@
 
 namespace dartcast {
 
-/// A summary may come from anywhere. Throws InvalidArgument where there are values for more patches than patch_names
+/// A summary may come from anywhere. Throws InvalidArgument if there are values for more patches than patch_names
 /// has, or for more planes than options.
 void check_summary(const Summary& summary);
 

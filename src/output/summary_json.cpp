@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Each is null where not all were counted.
+// Each is null if not all were counted.
 Json orientation_tests(const Summary& s) {
   const Counters& c = s.totals.counters;
   std::size_t size = c.histogram.size();
@@ -29,7 +29,7 @@ Json orientation_tests(const Summary& s) {
   return json;
 }
 
-// Values by the name of the patch; those without a patch where there are any.
+// Values by the name of the patch; those without a patch if there are any.
 Json by_patch(const Summary& s, const std::vector<std::uint64_t>& values) {
   Json json = Json::object();
   for (std::size_t i = 1; i < values.size(); ++i) json[s.patch_names[i]] = values[i];

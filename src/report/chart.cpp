@@ -109,7 +109,7 @@ bool is_shown(const Chart& chart, double x, double y) {
   return std::isfinite(x) && std::isfinite(y) && (!chart.log_x || x > 0.0) && (!chart.log_y || y > 0.0);
 }
 
-// The points of a line. Where many lie in one place, the lowest and the highest are kept.
+// The points of a line. If many lie in one place, the lowest and the highest are kept.
 std::string path_of(const Chart& chart, const ChartSeries& s, const Axis& x, const Axis& y) {
   std::string path;
   const auto add = [&](std::size_t i) {

@@ -22,7 +22,7 @@ struct Chart {
   bool log_y = false;  ///< if not, the axis has 0
 };
 
-/// Lines, each with its name in the legend where there are several. Series of many points are thinned out, with their
+/// Lines, each with its name in the legend if there are several. Series of many points are thinned out, with their
 /// peaks kept.
 std::string line_chart(const Chart& chart, const std::vector<ChartSeries>& series);
 

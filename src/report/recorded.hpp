@@ -114,7 +114,7 @@ std::string chunk_of(const RecordedContacts& contacts);
 std::string chunk_of(const RecordedArrivals& arrivals);
 std::string chunk_of(const RecordedEvent& event);
 
-/// Reads report.bin, or a recording in memory. Every function throws Error, which names the file, where it cannot be read, or is damaged.
+/// Reads report.bin, or a recording in memory. Every function throws Error, which names the file, if it cannot be read, or is damaged.
 class RecordedFile {
  public:
   struct Chunk {

@@ -117,7 +117,7 @@ bool has_values(const std::vector<double>& values) {
   return std::any_of(values.begin(), values.end(), [](double v) { return std::isfinite(v) && v != 0.0; });
 }
 
-// A chart over time of those series that have values; nothing where none has.
+// A chart over time of those series that have values; nothing if none has.
 std::string over_time(const std::string& title, const std::string& unit, const std::vector<double>& time,
                       const std::vector<std::pair<std::string, std::vector<double>>>& all) {
   std::vector<ChartSeries> series;

@@ -11,7 +11,7 @@ namespace dartcast {
 
 namespace {
 
-// A run that was cut off has a last frame off the schedule. It does not count where the run went on.
+// A run that was cut off has a last frame off the schedule. It does not count if the run went on.
 std::vector<ReportSelection::Frame> frames_of(const RecordedFile& file) {
   std::vector<ReportSelection::Frame> frames;
   std::size_t walls = 0;

@@ -28,7 +28,7 @@ struct ReportSelection {
   std::uint64_t all_ids = 0;  ///< of the run
 };
 
-/// Throws Error where there is no frame, or one has other walls than were recorded.
+/// Throws Error if there is no frame, or one has other walls than were recorded.
 ReportSelection select(const RecordedFile& file, const ReportOptions& options);
 
 }  // namespace dartcast

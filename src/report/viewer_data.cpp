@@ -27,7 +27,7 @@ using ViewerJson = nlohmann::ordered_json;
 constexpr std::size_t group_size = 16;          // frames
 constexpr std::size_t most_contacts = 250'000;  // beyond it, those of some slots are left out
 
-// A number that names a patch: 0 is none. Where a map has as many patches as it can, the last two share one.
+// A number that names a patch: 0 is none. If a map has as many patches as it can, the last two share one.
 std::uint16_t patch_or_none(std::uint16_t patch) {
   return static_cast<std::uint16_t>(std::min<unsigned>(patch + 1U, UINT16_MAX));
 }
@@ -158,7 +158,7 @@ class Builder {
     });
   }
 
-  // Where a particle is not there it keeps the last values, or has its first ones already: no difference costs nothing.
+  // If a particle is not there it keeps the last values, or has its first ones already: no difference costs nothing.
   template <class T>
   std::vector<T> values_of(const std::vector<T>& sparse) const {
     std::vector<T> values = sparse;

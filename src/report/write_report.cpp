@@ -1,6 +1,6 @@
 // Makes report.html.
 //
-// Phases: the viewer's data from report.bin; charts and tables from the run's other files; the page. Where the page is
+// Phases: the viewer's data from report.bin; charts and tables from the run's other files; the page. If the page is
 // too large the first phase is done again with fewer particles, then with fewer frames.
 #include <fmt/format.h>
 

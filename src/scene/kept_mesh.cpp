@@ -40,7 +40,7 @@ MeshFile read_text(const SurfaceScene& scene, std::string_view text) {
   return file;
 }
 
-// None where there is none, or it is of other surfaces, or damaged: then it is made again.
+// None if there is none, or it is of other surfaces, or damaged: then it is made again.
 std::optional<MeshFile> read_kept(const SurfaceScene& scene, const std::filesystem::path& kept, std::string_view mark) {
   if (kept.empty() || file_bytes(kept) == 0) return std::nullopt;
   try {

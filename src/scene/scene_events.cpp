@@ -23,7 +23,7 @@ double length(TomlTable& t, std::string_view key, std::string_view what) {
   return value;
 }
 
-// Where a constructor of a tool or an event refuses its arguments, the error names their place in the file.
+// If a constructor of a tool or an event refuses its arguments, the error names their place in the file.
 template <class Make>
 auto made(TomlTable& t, std::string_view key, Make&& make) {
   try {

@@ -19,11 +19,11 @@ namespace dartcast {
 struct SceneMesh {
   MeshData mesh;                  ///< checked and repaired, with `free` and patches as the scene says
   MeshReport report;              ///< of a file: repairs and warnings; of a generator: counts alone
-  Finding skipped;                ///< bad cells that were left out, where the scene wants that
+  Finding skipped;                ///< bad cells that were left out, if the scene wants that
   std::vector<Finding> warnings;  ///< as of LoadedScene
 };
 
-/// Calls make(). Where make() throws InvalidMesh, puts the mesh file's name before the message.
+/// Calls make(). If make() throws InvalidMesh, puts the mesh file's name before the message.
 template <class Make>
 auto with_mesh_name(const MeshSource& mesh, Make&& make) {
   try {

@@ -8,7 +8,7 @@
 
 namespace dartcast {
 
-/// Read one each. `number`: its place among its kind, from 1, for a name where none is given. Throw Error, with file,
+/// Read one each. `number`: its place among its kind, from 1, for a name if none is given. Throw Error, with file,
 /// line and key.
 BodyScene read_body(TomlTable& t, const std::filesystem::path& folder, std::size_t number, std::uint64_t seed);
 CatheterScene read_catheter(TomlTable& t, std::size_t number);

@@ -30,8 +30,8 @@ struct Range {
 inline constexpr Range Range::positive = {0.0, Range::unlimited, true};
 inline constexpr Range Range::not_negative = {0.0, Range::unlimited};
 
-/// A table of a scene. Each getter leaves `value` as it is where the key is absent, and throws Error with file, line,
-/// key, what is expected and what stands there, where it is of the wrong type or out of range.
+/// A table of a scene. Each getter leaves `value` as it is if the key is absent, and throws Error with file, line,
+/// key, what is expected and what stands there, if it is of the wrong type or out of range.
 class TomlTable {
  public:
   /// `name`: as it stands in the file, for messages: "[motion]".
@@ -70,13 +70,13 @@ class TomlTable {
 
   /// A table in this one.
   [[nodiscard]] TomlTable table(std::string_view key);
-  /// One table, or a list of tables; empty where the key is absent.
+  /// One table, or a list of tables; empty if the key is absent.
   [[nodiscard]] std::vector<TomlTable> tables(std::string_view key);
   [[nodiscard]] std::vector<std::string> keys() const;
 
-  /// Throws where the key is absent.
+  /// Throws if the key is absent.
   void require(std::string_view key, std::string_view what);
-  /// Throws where a key was never asked for: names the nearest place and the keys there are.
+  /// Throws if a key was never asked for: names the nearest place and the keys there are.
   void finish() const;
 
   [[noreturn]] void fail(std::string_view key, const std::string& message) const;

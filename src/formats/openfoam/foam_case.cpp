@@ -208,8 +208,8 @@ constexpr std::array<FieldClass, 8> field_classes = {{{"volScalarField", true, 1
                                                       {"pointSymmTensorField", false, 6},
                                                       {"pointTensorField", false, 9}}};
 
-/// Moves to the value of internalField; false where there is none. Collects the values that stand before it, also in
-/// files that this one includes. Other directives are passed over: their values are missed where they are needed.
+/// Moves to the value of internalField; false if there is none. Collects the values that stand before it, also in
+/// files that this one includes. Other directives are passed over: their values are missed if they are needed.
 bool find_internal_field(FoamFile& file, const fs::path& folder, std::uint64_t max_memory, FoamMacros& values,
                          unsigned depth = 0) {
   constexpr unsigned deepest = 10;

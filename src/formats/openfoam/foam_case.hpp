@@ -24,7 +24,7 @@ struct FoamTime {
 /// A case, or a polyMesh folder alone.
 class FoamCase {
  public:
-  /// The case that a path names; see is_openfoam(). None where it names none.
+  /// The case that a path names; see is_openfoam(). None if it names none.
   static std::optional<FoamCase> find(const std::filesystem::path& path);
 
   /// Whether the path names a time of the case.
@@ -32,10 +32,10 @@ class FoamCase {
   /// Whether the path is a polyMesh folder.
   [[nodiscard]] bool is_folder_alone() const { return folder_alone_; }
   [[nodiscard]] const std::filesystem::path& root() const { return root_; }
-  /// Folders of processors; none where the case has a mesh of its own.
+  /// Folders of processors; none if the case has a mesh of its own.
   [[nodiscard]] const std::vector<std::filesystem::path>& parts() const { return parts_; }
 
-  /// All times, increasing. Throws InvalidMesh where the mesh changes its faces at one.
+  /// All times, increasing. Throws InvalidMesh if the mesh changes its faces at one.
   [[nodiscard]] std::vector<FoamTime> times() const;
   /// Whether the time's folder, or that of each processor, has the file: "U", "polyMesh/points".
   [[nodiscard]] bool has(std::string_view time, std::string_view file) const;
@@ -52,7 +52,7 @@ class FoamCase {
     std::size_t components = 1;
     std::vector<double> values;
   };
-  /// The field at the path's time, of a mesh of so many cells and points; none where its class is not one of fields at
+  /// The field at the path's time, of a mesh of so many cells and points; none if its class is not one of fields at
   /// cells or points, or there is no such file.
   [[nodiscard]] std::optional<Field> field(std::string_view name, std::size_t cells, std::size_t points,
                                            std::uint64_t max_memory) const;
@@ -65,12 +65,12 @@ class FoamCase {
   [[nodiscard]] std::string time_of_points() const;
 
   std::filesystem::path root_;
-  std::filesystem::path mesh_;     // the polyMesh folder; of the processors' folders where these are the case
+  std::filesystem::path mesh_;     // the polyMesh folder; of the processors' folders if these are the case
   std::string time_ = "constant";  // or a time's name
   bool names_time_ = false;
   bool folder_alone_ = false;
-  std::vector<std::filesystem::path> parts_;       // the case's mesh, where root has none
-  std::vector<std::filesystem::path> processors_;  // all, also where root has a mesh
+  std::vector<std::filesystem::path> parts_;       // the case's mesh, if root has none
+  std::vector<std::filesystem::path> processors_;  // all, also if root has a mesh
 };
 
 }  // namespace dartcast

@@ -22,7 +22,7 @@ inline constexpr std::uint64_t no_label_limit = 0xffffffffU;
 /// Whether the folder has the file, or the file with .gz.
 bool has_foam_file(const std::filesystem::path& folder, std::string_view name);
 
-/// The class that the header of the file gives, as "volVectorField"; empty where there is no such header.
+/// The class that the header of the file gives, as "volVectorField"; empty if there is no such header.
 std::string foam_class(const std::filesystem::path& folder, std::string_view name);
 
 /// Lists of labels, one after another: list i is labels[offsets[i] .. offsets[i + 1]).
@@ -68,7 +68,7 @@ class FoamFile {
   std::string entry();
   /// Takes a line that starts with '#'. The file that it includes, if that is named by a plain relative path; else empty.
   std::string directive();
-  /// Where a macro is next, $NAME or ${NAME}, puts its value in its place. Throws where it has none.
+  /// If a macro is next, $NAME or ${NAME}, puts its value in its place. Throws if it has none.
   void expand(const FoamMacros& values);
 
   // Lists: `N ( items )`, `N { item }`, `( items )`, each behind the name of a type or not; binary `N` and the bytes in

@@ -23,7 +23,7 @@ struct Part {
   PolyMesh mesh;
   std::vector<std::uint32_t> points;
   std::vector<std::uint32_t> cells;
-  std::vector<std::int64_t> faces;  // label + 1, negative where the face is turned over
+  std::vector<std::int64_t> faces;  // label + 1, negative if the face is turned over
 };
 
 [[noreturn]] void refuse(const Part& part, const std::string& message) {

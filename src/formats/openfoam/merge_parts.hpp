@@ -11,7 +11,7 @@
 namespace dartcast {
 
 /// The mesh that decomposePar has divided, with its labels, from the polyMesh folders of all processors. Zones keep the
-/// order of their labels. Throws InvalidMesh, with file and line or byte, where a part cannot be read, or where the
+/// order of their labels. Throws InvalidMesh, with file and line or byte, if a part cannot be read, or if the
 /// parts do not make up a whole.
 PolyMesh merged_parts(std::span<const std::filesystem::path> folders, std::uint64_t max_memory);
 

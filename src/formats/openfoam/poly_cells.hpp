@@ -17,19 +17,19 @@ FoamLists faces_of_cells(const PolyMesh& mesh);
 /// Whether the mesh is a plane for OpenFOAM: it has faces in a patch of the type `empty`.
 bool has_empty_faces(const PolyMesh& mesh);
 
-/// The mesh in space: tetrahedra, hexahedra, prisms and pyramids where the faces are those of one, else polyhedra.
+/// The mesh in space: tetrahedra, hexahedra, prisms and pyramids if the faces are those of one, else polyhedra.
 /// Takes the points.
 ParsedMesh mesh_in_space(PolyMesh mesh);
 
 /// The mesh in the plane, of one layer between faces in patches of the type `empty`: the corners of the lower face of
-/// each cell, with z = 0. `kept`: the labels of its points. Throws InvalidMesh where there is more than one layer, or
+/// each cell, with z = 0. `kept`: the labels of its points. Throws InvalidMesh if there is more than one layer, or
 /// the layer is not across z.
 ParsedMesh mesh_in_plane(const PolyMesh& mesh, std::vector<std::uint32_t>& kept);
 
-/// The corners that a face has in the new mesh, none where it is no face of it. Valid until the next call.
+/// The corners that a face has in the new mesh, none if it is no face of it. Valid until the next call.
 using CornersOfFace = std::function<std::span<const std::uint32_t>(std::uint32_t face)>;
 
-/// Regions from zones of cells; patches from patches and, where a face is in none, from zones of faces. A cell, or face,
+/// Regions from zones of cells; patches from patches and, if a face is in none, from zones of faces. A cell, or face,
 /// in several zones has the first one, which is a warning. So are patches that particles could pass in OpenFOAM.
 void add_zones_and_patches(const PolyMesh& mesh, const CornersOfFace& corners, ParsedMesh& parsed);
 

@@ -52,7 +52,7 @@ std::vector<std::int32_t> face_tags(const PolyMesh& mesh, ParsedMesh& parsed) {
   for (std::size_t f = 0; f < tags.size(); ++f) tags[f] = static_cast<std::int32_t>(mesh.patch[f] + 1);  // none: 0
   for (std::size_t z = 0; z < mesh.face_zones.size(); ++z) {
     const PolyZone& zone = mesh.face_zones[z];
-    const auto tag = static_cast<std::int32_t>(mesh.patches.size() + z + 1);  // also where a patch has the name
+    const auto tag = static_cast<std::int32_t>(mesh.patches.size() + z + 1);  // also if a patch has the name
     parsed.mesh.patch_names[tag] = zone.name;
     for (const std::uint32_t f : zone.labels) {
       if (tags[f] == 0) tags[f] = tag;

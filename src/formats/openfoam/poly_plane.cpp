@@ -40,7 +40,7 @@ std::vector<std::array<std::uint32_t, 2>> empty_pairs(const PolyMesh& mesh) {
   return pairs;
 }
 
-/// The lower of the two faces of each cell along an axis; none where these are not all below all others.
+/// The lower of the two faces of each cell along an axis; none if these are not all below all others.
 std::vector<std::uint32_t> lower_faces(const PolyMesh& mesh, const std::vector<std::array<std::uint32_t, 2>>& pairs,
                                        double Vec3::*axis) {
   std::vector<std::uint32_t> lower;

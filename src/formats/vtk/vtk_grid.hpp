@@ -43,14 +43,14 @@ struct VtkArray {
   void take_rows(std::span<const std::uint32_t> rows);
 };
 
-/// The first array of this name; null where there is none.
+/// The first array of this name; null if there is none.
 const VtkArray* find_array(const std::vector<VtkArray>& arrays, std::string_view name);
 
 struct VtkGrid {
   std::vector<Vec3> points;
   std::vector<std::uint8_t> types;         ///< per cell
   std::vector<std::size_t> offsets = {0};  ///< cells + 1, into connectivity
-  /// Points; 0xffffffff where a number names none. A polyhedron has its faces, as in MeshData.
+  /// Points; 0xffffffff if a number names none. A polyhedron has its faces, as in MeshData.
   std::vector<std::uint32_t> connectivity;
   std::vector<VtkArray> point_data;
   std::vector<VtkArray> cell_data;
@@ -58,7 +58,7 @@ struct VtkGrid {
   std::vector<std::size_t> pieces;  ///< the first point of each piece; one or none: the grid is in one
 };
 
-/// Adds the pieces of another file, as they are. Throws InvalidMesh where it has other arrays.
+/// Adds the pieces of another file, as they are. Throws InvalidMesh if it has other arrays.
 void add_pieces(VtkGrid&& from, VtkGrid& to);
 
 /// Points of different pieces at one place become the first of them. Cost: n log n.
@@ -76,7 +76,7 @@ struct PointRange {
 };
 
 /// Adds a cell. `ids`: its points, counted from the range's first, or the face stream of a polyhedron. Throws InvalidMesh
-/// where that does not fit its numbers.
+/// if that does not fit its numbers.
 void add_cell(std::uint8_t type, std::span<const std::int64_t> ids, const PointRange& range, VtkGrid& grid);
 
 /// Reads one of VTK's XML files of a kind, "UnstructuredGrid" or "PolyData". Tags, sections and names are checked as
@@ -85,13 +85,13 @@ void add_cell(std::uint8_t type, std::span<const std::int64_t> ids, const PointR
 /// not grow more than 1100 times. The memory for the announced sizes is checked before any data are decoded
 /// (`max_memory`: as of ReadOptions). Without `with_data` the arrays at points and cells are left out, and only their
 /// announced lengths checked. In PolyData vertices, lines, polygons and strips follow each other in each piece. Throws
-/// InvalidMesh with the line or array where something is wrong, or where the file is of another kind.
+/// InvalidMesh with the line or array if something is wrong, or if the file is of another kind.
 VtkGrid read_vtk_xml_grid(std::string_view content, std::string_view kind, std::uint64_t max_memory,
                           bool with_data = true);
 
 /// Reads a legacy .vtk file, ASCII or binary, of the versions 1.0 to 5.9. It checks every count against the bytes that
 /// are there, and every number of an ASCII file. Arrays have different names at the points, at the cells, in the file.
-/// Throws InvalidMesh with the line (or byte) where something is wrong, or where the data set is not an unstructured
+/// Throws InvalidMesh with the line (or byte) if something is wrong, or if the data set is not an unstructured
 /// grid. `max_memory`: as of ReadOptions.
 VtkGrid read_legacy_grid(std::string_view content, std::uint64_t max_memory);
 

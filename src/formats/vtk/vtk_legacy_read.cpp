@@ -22,7 +22,7 @@
 namespace dartcast {
 namespace {
 
-/// A name as VTK reads it: %41 is A, and a '%' among the last two characters is dropped. None where VTK would read
+/// A name as VTK reads it: %41 is A, and a '%' among the last two characters is dropped. None if VTK would read
 /// beyond the name's end, would read a character from uninitialized memory, or would cut the name.
 std::optional<std::string> decoded(std::string_view name) {
   std::string out;

@@ -17,7 +17,7 @@
 namespace dartcast {
 namespace {
 
-/// Tags of the rows of an array, and the names where they are texts.
+/// Tags of the rows of an array, and the names if they are texts.
 struct Tags {
   std::vector<std::int32_t> values;
   std::map<std::int32_t, std::string> names;

@@ -19,7 +19,7 @@ struct Places {
 
 /// Sets the regions of the cells and the tags of the patch faces, with their names. `patch_array`: see
 /// ReadOptions::patch_array. Returns whether the cell array `patch` is one that write_vtu() adds, so that it has no
-/// data of the cells. Throws InvalidMesh, which names the arrays of the file, where the requested one cannot be used.
+/// data of the cells. Throws InvalidMesh, which names the arrays of the file, if the requested one cannot be used.
 bool copy_tags(const VtkGrid& grid, const Places& places, const std::string& patch_array, MeshData& mesh);
 
 }  // namespace dartcast

@@ -22,7 +22,7 @@
 namespace dartcast {
 namespace {
 
-/// Calls use(T()) with the type of an array's numbers; returns false where the name is none.
+/// Calls use(T()) with the type of an array's numbers; returns false if the name is none.
 template <class Use>
 bool with_type(std::string_view name, Use&& use) {
   if (name == "Int8") return use(std::int8_t()), true;
@@ -43,7 +43,7 @@ class Base64 {
  public:
   explicit Base64(std::string_view text) : text_(text) {}
 
-  /// The next n bytes; shorter where the text ends.
+  /// The next n bytes; shorter if the text ends.
   std::string take(std::uint64_t n) {
     std::string out;
     while (out.size() < n) {
@@ -188,7 +188,7 @@ std::uint64_t total_bytes(const Blocks& blocks) {
   return total;
 }
 
-/// Decompresses a block; false where it does not give exactly the bytes of `out`.
+/// Decompresses a block; false if it does not give exactly the bytes of `out`.
 bool unpack(std::string_view packed, std::span<char> out, bool lz4) {
   if (lz4) {
     if (packed.size() > INT_MAX || out.size() > INT_MAX) return false;
@@ -226,7 +226,7 @@ std::string decode_bytes(const VtuArray& array, const VtuEncoding& encoding) {
   Source source(array, encoding);
   std::string bytes;
   if (encoding.compressor.empty()) {
-    // Where they are not compressed, VTK encodes the header and the data in one run. Others encode the header apart.
+    // If they are not compressed, VTK encodes the header and the data in one run. Others encode the header apart.
     const std::size_t head = encoding.header_bytes;
     bytes = source.take(head + size);
     if (bytes.size() == head) bytes += source.take(size);
