@@ -235,7 +235,7 @@ struct BodiesCheckpoint {
 ///  velocities between the passes.
 ///  3. Edges, for bodies with a surface. Its targets are where the particles carry it. SolidSet::advance() takes it there,
 ///  so that no edge and no triangle crosses a wall. If it meets walls, the particles give way, as far as walls and
-///  energy let them, and lose the velocity towards these walls: there is no rebound from an edge.
+///  energy let them, and lose the velocity towards these walls. There is no rebound from an edge.
 /// StepOptions::max_contacts bounds the contacts of a particle in a pass.
 ///
 /// Energy law: in a step the total energy of a body never grows by more than energy_slack of itself, plus

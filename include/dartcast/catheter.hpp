@@ -125,7 +125,7 @@ class Catheter {
 
   /// To be called after each edit of the environment, as Environment::update_after_edit(). Points without a place move
   /// to the nearest free one. If there is none they are held in their blocked cells until these are free again. With
-  /// edges the catheter is stuck if a wall that the edit made is in a segment: it stays until a later edit frees it, and
+  /// edges the catheter is stuck if a wall that the edit made is in a segment. It stays until a later edit frees it, and
   /// the cells around its points carry it along.
   /// Throws InvalidArgument, nothing changed, if a point's cell was removed and no free cell exists; the catheter
   /// cannot be used after that.

@@ -33,7 +33,7 @@ struct ImplicitSimplex;
 /// Simplices that hold the same point or edge are one *star* if facets that hold it connect them. In a cell that is a
 /// ball, as all valid cells are, a point or an edge has one star.
 ///
-/// Numbers of stars fit in 16 bits: there are at most 15/4 for each of the simplices and of the other triangles of
+/// Numbers of stars fit in 16 bits. There are at most 15/4 for each of the simplices and of the other triangles of
 /// the fans, of which there are at most Shape::max_darts. Around a Steiner point of the cell these are 3/2 around
 /// edges of the triangles and 1 around their points. There are 1 around edges to the Steiner point, and 1/4 around
 /// itself: at least three triangles meet in each point. Around a corner they are fewer.

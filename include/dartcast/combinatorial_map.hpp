@@ -1,7 +1,7 @@
 // The combinatorial map: darts with phi1, phi2, phi3 over convex cells, free or blocked. It has no coordinates.
 //
 // After T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for continuous collision detection in
-// deformable environments", SPM 2009, section 3.1. No dart is stored: a dart is a cell and a number in the cell's
+// deformable environments", SPM 2009, section 3.1. No dart is stored. A dart is a cell and a number in the cell's
 // shape. phi1 and phi2 look up in the shape. phi3 goes through the record of the cell.
 //
 // A walk reads one record for each cell that it enters. The record of a hexahedron fills one cache line. Records

@@ -88,7 +88,7 @@ using ContactCallback =
 
 /// Decides what follows the contacts of a round: the next contact of each particle that still has one. It gets them by
 /// particle, at most one for each; ContactList::walls_of() and earlier_walls_of() give their walls. It writes the answer
-/// to contacts.contacts[i] to after[i], which is AfterContact{} before: the particle stays at the wall, and moves with
+/// to contacts.contacts[i] to after[i], which is AfterContact{} before. The particle stays at the wall, and moves with
 /// it, until the end of the step. It is called from the thread of the caller. The list and the span are valid until it
 /// returns. It must not change the environment or the particles.
 using RoundCallback = std::function<void(const ContactList& contacts, std::span<AfterContact> after)>;

@@ -158,7 +158,7 @@ std::vector<CellFace> open_faces(ComplexEdit& edit, std::span<const Cell> cells,
 
 /// Ties a vessel: blocks the free cells of one cross-section. These are the cells that the plane crosses and that are
 /// connected to `start` by faces within the section. Cells that touch the plane from below count as crossed, so that
-/// the section always seals: no free cell below the plane is a neighbour of one above there. Returns the blocked cells.
+/// the section always seals. No free cell below the plane is a neighbour of one above there. Returns the blocked cells.
 /// To untie the vessel, free them.
 ///
 /// Throws InvalidArgument if `start` does not exist, is blocked, or is not crossed. Cost: that of the cells blocked

@@ -28,7 +28,7 @@ struct DecomposeOptions {
 /// unchanged, then (with_outside) the four corners of the rectangle, counterclockwise from the lowest.
 ///
 /// Cells are strictly convex, decided exactly, so that every three corners of one are a positive triangle. They
-/// conform: each edge of a ring is an edge of the mesh, and every other edge, except those of the rectangle, is shared
+/// conform. Each edge of a ring is an edge of the mesh, and every other edge, except those of the rectangle, is shared
 /// by two cells. Each cell starts with its point of the lowest number. Cells are ordered by that point, those inside
 /// first. Cells inside are free and of region 1, "inside". The others are blocked and of region 2, "outside". Edges of
 /// named rings are patch faces, in the ring's direction. Rings of one name share a patch. The same rings scaled by a

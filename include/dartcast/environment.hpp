@@ -139,7 +139,7 @@ struct UpdateReport {
 /// - Before the next edit() it follows the last one, by update_after_edit().
 ///
 /// Any order of calls that keeps these rules is allowed. advance(), update_after_edit() and add() refuse a set that has
-/// missed a move or an edit; its positions can be added to a new set.
+/// missed a move or an edit. Its positions can be added to a new set.
 class Environment {
  public:
   /// Builds the complex. Throws InvalidMesh if check_and_repair() finds a defect, or if a cell has a simplex that
@@ -192,7 +192,7 @@ class Environment {
   /// ago. In the plane z is not read. Write there only when every set of particles has taken part in the last move:
   /// until then they need the old content. An edit ends the validity of the result.
   [[nodiscard]] std::span<Vec3> next_positions();
-  /// Makes the positions written current, at no cost per cell: every set of particles must then be advanced once, or
+  /// Makes the positions written current, at no cost per cell. Every set of particles must then be advanced once, or
   /// update_after_edit() an edit made after this move, before the next move. advance() takes targets relative to
   /// positions before the move.
   void move();
@@ -222,7 +222,7 @@ class Environment {
   /// others keep their state bit for bit. If particles are absorbed, those after them move up, as by remove().
   ///
   /// Suppose that the edit was made after a move, and the particles have not been advanced since. Then the vertices
-  /// first carry them along, as by advance() without a motion of their own. They have then taken part in the move: for
+  /// first carry them along, as by advance() without a motion of their own. They have then taken part in the move. For
   /// the next advance() the walls are at rest, and targets are relative to positions() as they are now. Suppose that
   /// the edit was made before the last move. Then the particles follow it in the positions before that move, and await
   /// advance(), as after any move.

@@ -38,7 +38,7 @@ struct ReadOptions {
   /// dropped. Without it they are refused, because their sides are curved.
   bool linearise = false;
   /// A .msh file that keeps the mesh made around a scene's surfaces (SurfaceScene). If it was made of the same files
-  /// with the same values, it is read, and no mesher is needed; else the mesh is made and written there. Empty: none.
+  /// with the same values, it is read, and no mesher is needed. Else the mesh is made and written there. Empty: none.
   std::filesystem::path kept_mesh = {};
 };
 
@@ -52,7 +52,7 @@ struct MeshFile {
 /// .msh, .msh2, .msh4 (Gmsh 1, 2 and 4); .mesh and .meshb (Medit); .node or .ele, with the other beside it
 /// (TetGen). Or the folder of an OpenFOAM case (formats/openfoam.hpp) or of SimVascular (formats/vtp_surface.hpp).
 /// The cell array `free` of a .vtu or .vtk file becomes MeshData::free if write_mesh() has written it.
-/// Nothing in the file makes this throw: a file that cannot be read has a defect of kind "file" in the report, with line
+/// Nothing in the file makes this throw. A file that cannot be read has a defect of kind "file" in the report, with line
 /// or byte. Cost: a few times the file's size in memory.
 MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
@@ -65,7 +65,7 @@ MeshFile read_valid_mesh(const std::filesystem::path& path, const ReadOptions& o
 bool is_surface_file(const std::filesystem::path& path);
 
 /// Reads .stl (ASCII, binary), .obj, .ply (ASCII, binary), .off or .vtp, by ending and content, and then calls
-/// check_and_repair_surface(). Nothing in the file makes this throw: a file that cannot be read has a defect of kind
+/// check_and_repair_surface(). Nothing in the file makes this throw. A file that cannot be read has a defect of kind
 /// "file" in the report, with line or byte. Points keep their order, and points that no face uses are kept. So
 /// Surface::move() can take the positions of another file of the same faces. formats/stl.hpp says which points a .stl
 /// has. The option `max_memory` counts, the other does not. Cost: n log n; a few times the file's size in memory.
@@ -87,8 +87,8 @@ struct SurfaceScene;  // dartcast/scene.hpp
 /// points bit by bit; what a region holds follows from these faces alone; its volume is the enclosed one to 1e-9.
 ///
 /// Regions have the surfaces' names; the cells in them are free, and those outside blocked. Patches are the groups of
-/// the files (.stl solids, .obj groups), else the parts between sharp edges (wall, or wall_1, wall_2 ...); caps are
-/// inlet, outlet or outlet_1 ... by decreasing area; the box is `box`. With several surfaces the region's name stands
+/// the files (.stl solids, .obj groups), else the parts between sharp edges (wall, or wall_1, wall_2 ...). Caps are
+/// inlet, outlet or outlet_1 ... by decreasing area. The box is `box`. With several surfaces the region's name stands
 /// before each.
 ///
 /// Nothing in the files makes this throw: what is wrong is a defect in the report, with faces and a place. A program

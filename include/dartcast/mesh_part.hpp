@@ -15,7 +15,7 @@ namespace dartcast {
 inline constexpr const char* unknown_patch = "behind the ghosts";
 
 /// A part's own cells and the ghosts: all cells that share a point with one of these. Cells and points are in the order of
-/// the whole mesh, and so are the patches: every comparison of two numbers has the same result in the part and in the whole.
+/// the whole mesh, and so are the patches. Every comparison of two numbers has the same result in the part and in the whole.
 struct MeshPart {
   MeshData mesh;                      ///< `source`: as in the whole
   std::uint32_t part = 0;             ///< its number
@@ -42,7 +42,7 @@ MeshPart mesh_part(const MeshData& whole, std::span<const std::uint32_t> owners,
 bool has_parts(const BoxOptions& options);
 
 /// One of `parts` parts of generate_box(), to the same bits, made without the rest: its cubes, and the cubes around them.
-/// Throws InvalidArgument as generate_box(), if there are fewer cubes than parts, and if has_parts() is false: cubes
+/// Throws InvalidArgument as generate_box(), if there are fewer cubes than parts, and if has_parts() is false. Cubes
 /// that are mixed or blocked at random depend on all others. Cost: that of the part.
 MeshPart box_part(const BoxOptions& options, std::uint32_t parts, std::uint32_t part);
 

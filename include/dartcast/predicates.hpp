@@ -134,8 +134,8 @@ double orient2d_value(const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// A determinant in the plane is a b' - a' b, of differences of stored doubles. It is off by at most plane_error times
 /// m, as long as plane_bound_holds(). Here m is the product of the largest |x| and |y| among them. Shewchuk's bound is
-/// (3 + 16 e) e of the permanent, which is at most 2 m. The last factor covers the same as that of determinant_error:
-/// coordinates that count as 0 change the determinant by less than 4 * 2^-299 m / 2^-234 < 2^-62 m.
+/// (3 + 16 e) e of the permanent, which is at most 2 m. The last factor covers the same as that of determinant_error.
+/// Coordinates that count as 0 change the determinant by less than 4 * 2^-299 m / 2^-234 < 2^-62 m.
 inline constexpr double plane_error = 2.0 * (3.0 + 16.0 * 0x1p-53) * 0x1p-53 * (1.0 + 0x1p-10);
 /// Whether both are in [smallest_extent, largest].
 constexpr bool are_plane_extents(double x, double y, double largest) {

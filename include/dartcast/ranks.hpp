@@ -19,7 +19,7 @@ class RankFailed : public Error {
 /// Processes of equal rights but for the first, which writes what all have done. They are numbered from 0, their ranks.
 ///
 /// Every function but rank() and size() is collective: all ranks call the same functions in the same order, and each
-/// call waits for the others. Bytes are those of one kind of machine. A rank that cannot go on calls fail(): then the
+/// call waits for the others. Bytes are those of one kind of machine. A rank that cannot go on calls fail(). Then the
 /// next call of the others throws RankFailed, so that none waits for a rank that has ended.
 class Ranks {
  public:

@@ -76,7 +76,7 @@ class WallResponses {
 /// Whether a particle still moves, and why not.
 enum class ParticleStatus : std::uint8_t { alive, stuck, absorbed, escaped };
 
-/// A constant acceleration of all particles, if nothing else changes their velocities between contacts: each target
+/// A constant acceleration of all particles, if nothing else changes their velocities between contacts. Each target
 /// is position + velocity * duration, with the velocity after the acceleration (the symplectic rule of Euler).
 struct Acceleration {
   Vec3 value;

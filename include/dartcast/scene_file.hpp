@@ -28,12 +28,12 @@ struct LoadedScene {
 };
 
 /// Reads the files that a scene names: its mesh, positions, surfaces of bodies. It reads the first of the deformation's
-/// frames and of a field's files, and checks that the others exist: they are read when they are needed. The mesh has
+/// frames and of a field's files, and checks that the others exist. They are read when they are needed. The mesh has
 /// its scale, free cells and patches as the scene says, also if it comes from a generator. Only the options
 /// `max_memory` and `kept_mesh` have an effect. Throws Error and its kinds, naming the file and its place in the scene.
 LoadedScene load_scene_files(Scene scene, const ReadOptions& options = {}, Threads threads = {});
 
-/// The same for ranks that share the scene by cells (Partition::cells): each gets its part of the mesh, and no rank but the
+/// The same for ranks that share the scene by cells (Partition::cells). Each gets its part of the mesh, and no rank but the
 /// first ever has the whole. A box is made in parts (has_parts()), and a .pvtu file is read in parts (read_mesh_part()):
 /// then the first does not have it, either. Other meshes are read or made by the first, which sends each its part. Frames
 /// of a deformation are read by all. Throws as load_scene_files(), and InvalidArgument if pieces are

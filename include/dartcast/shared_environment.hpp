@@ -56,7 +56,7 @@ struct SharedStep {
   std::uint64_t come = 0;
 };
 
-/// Steps as those of an Environment of the whole mesh, to the same bits, for points in space: positions, cells, contacts and
+/// Steps as those of an Environment of the whole mesh, to the same bits, for points in space. Positions, cells, contacts and
 /// their order for each particle do not depend on the parts, or on their number.
 ///
 /// Every function but those that are const and say nothing else is collective: all ranks call it, in the same order, and

@@ -229,8 +229,8 @@ struct SolidSummary {
 ///
 /// In the plane every vector given to a simulation must have z = 0.
 ///
-/// Ranks (SimulationOptions::ranks) share the particles: each makes the same simulation with the same calls, and has the
-/// particles of some ids; all else is repeated on each. Every call waits for the other ranks. Results are the same bits for
+/// Ranks (SimulationOptions::ranks) share the particles. Each makes the same simulation with the same calls, and has the
+/// particles of some ids. All else is repeated on each. Every call waits for the other ranks. Results are the same bits for
 /// any number of them. Spheres that collide are refused. By cells (Partition) each has a part of the environment.
 class Simulation {
  public:
@@ -263,7 +263,7 @@ class Simulation {
   void add_inlet(Patch patch, double rate, const Vec3& velocity, double radius = 0.0,
                  std::span<const double> user_data = {});
 
-  /// Adds particles at these positions, as Environment::add(). `radius`: as is_radius(); a sphere that does not fit is
+  /// Adds particles at these positions, as Environment::add(). `radius`: as is_radius(). A sphere that does not fit is
   /// moved out of walls by its first step, and out of other spheres little by little. `user_data`: of each of these
   /// particles, a number for each name in the options; empty: zeros. Throws InvalidArgument, nothing added, if
   /// a value is out of range.
@@ -391,7 +391,7 @@ class Simulation {
 };
 
 /// Adds particles at random points of the free cells, of equal likelihood by volume (in the plane by area). A
-/// particle's point depends on the seed and its index in the set alone: an empty simulation of the same scene and seed
+/// particle's point depends on the seed and its index in the set alone. An empty simulation of the same scene and seed
 /// adds the same ones. Throws InvalidArgument, nothing added, if no cell is free or the count is beyond 2^31. So do
 /// particles of another environment, or that have missed a move or an edit, and cells too thin to be hit. Cost: linear
 /// in the cells, and about 1 us for each particle.

@@ -28,7 +28,7 @@ struct SphereOverlap {
 /// The effects of one step of spheres.
 struct SphereReport {
   /// Spheres and points, as from Environment::advance(). A sphere's contact has the point on the wall. The `normal` of
-  /// each of its walls is the unit vector from the point touched there to the centre; at an edge or a vertex it is not
+  /// each of its walls is the unit vector from the point touched there to the centre. At an edge or a vertex it is not
   /// the wall's own normal.
   StepReport step;
   std::vector<SphereOverlap> overlaps;  ///< by particle, then the deepest first

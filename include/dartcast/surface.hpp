@@ -303,7 +303,7 @@ class SurfaceEdit {
 
 /// A place after an edit. If its face was not replaced, it stays as it is. A new face that comes from its face (by
 /// source) may have a triangle with the same corners. The place then goes there with the same weights. Otherwise it
-/// goes to the nearest place in the new faces; at equal distances a face that comes from its own is preferred, then the
+/// goes to the nearest place in the new faces. At equal distances a face that comes from its own is preferred, then the
 /// first. So a place on an edge that is opened stays on its side.
 ///
 /// Returns nothing if no face took the place of the removed ones. Every place must follow each edit before the next.

@@ -79,7 +79,7 @@ class VectorField {
   /// Reads the samples that times from `begin` to `end` (s) need, and forgets all others: two or three if steps are
   /// shorter than the samples' distances. Throws as the constructor, nothing changed.
   void hold(double begin, double end);
-  /// Sets the values at these times, for at(). They are computed once for all particles: the cost is linear in the
+  /// Sets the values at these times, for at(). They are computed once for all particles. The cost is linear in the
   /// points or cells, and nothing if the field is steady or stands at these times already. Samples that are not held
   /// are read. `complex`: as it is now. The same bits for any number of threads.
   void set_times(std::span<const double> times, const CellComplex& complex, Threads threads = {});

@@ -106,7 +106,7 @@ class ExactSum {
   }
 
   // Precondition: carried, and not negative. 64 bits from the first one that is set, the last of them also set if any
-  // lower one is: the conversion to double then rounds as the whole number would. A number below 2^-1022 has no bits to
+  // lower one is. The conversion to double then rounds as the whole number would. A number below 2^-1022 has no bits to
   // round off.
   [[nodiscard]] double rounded() const {
     std::size_t top = digit_count - 1;

@@ -2,7 +2,7 @@
 // NAME_portable.cpp, and NAME_avx2.cpp, which defines DARTCAST_AVX2 first. An .inl file that is opened alone is the
 // portable one.
 //
-// An .inl file first includes what it needs, then opens a region for its own code: functions of other headers must not
+// An .inl file first includes what it needs, then opens a region for its own code. Functions of other headers must not
 // be compiled for instructions that the machine may not have.
 //
 //   DARTCAST_BEGIN_KERNEL

@@ -78,7 +78,7 @@ void Bodies::Impl::accept(Body& body) {
 }
 
 // Cuts velocities to the energy that the body has. If it met no wall, it cuts those relative to the rigid motion
-// alone, if that suffices up to the slack: then momentum and angular momentum stay.
+// alone, if that suffices up to the slack. Then momentum and angular momentum stay.
 void Bodies::Impl::limit_energy(Body& body) {
   const double has = kinetic(body);
   const double allowed = std::max(0.0, body.allowed);

@@ -21,7 +21,7 @@ class BodyRebounds {
   /// join the impulses of an impact. `pairs`: as found by BodyCollisions. `movers`: the bodies with their velocities;
   /// out: those after the impact. Returns the number of such pairs. Momentum and angular momentum change by rounding
   /// alone, and the kinetic energy of joined bodies grows by rounding alone, however far the solver came. Reason: the
-  /// energy is a quadratic function of the share of the impulses that is given; it is least at some share, and the
+  /// energy is a quadratic function of the share of the impulses that is given. It is least at some share, and the
   /// share given is at most twice that. Preconditions: options are in range, restitution is set, pairs are sorted and
   /// their ids ascend.
   std::uint64_t solve(const BodyParticles& particles, std::span<const SpherePair> pairs,

@@ -23,7 +23,7 @@ struct Symmetric {
 };
 
 // Leading minors above this share of the norm's powers prove a matrix positive definite, with pivots far above
-// pivot_share (entries are at most 2 norms, so that they are quotients above 2^-23 norms): the rounding of the entries
+// pivot_share (entries are at most 2 norms, so that they are quotients above 2^-23 norms). The rounding of the entries
 // and of the minors, of at most some 50 products of three, is less than 2^-44.
 constexpr double minor_share = 0x1p-20;
 
@@ -70,8 +70,8 @@ struct Adjugate {
 };
 
 // Newton's method for the maximum of trace(R^T A) over rotations R exp(w): with M = R^T A the first derivative is the
-// axial vector of M, the second -(trace(M) 1 - sym(M)). If the second is negative definite the maximum is unique:
-// its eigenvalues are sums of two singular values, the least one with the sign of det A.
+// axial vector of M, the second -(trace(M) 1 - sym(M)). If the second is negative definite the maximum is unique.
+// Its eigenvalues are sums of two singular values, the least one with the sign of det A.
 std::optional<Quaternion> newton(const Mat3& a, Quaternion q, double norm) {
   for (int i = 0; i < rotation_iterations; ++i) {
     const Mat3 r = matrix(q);

@@ -16,7 +16,7 @@ namespace dartcast {
 
 namespace {
 
-// A principal moment below this share of the greatest one is 0: the region is flat across it, up to rounding of its
+// A principal moment below this share of the greatest one is 0. The region is flat across it, up to rounding of its
 // points (relative to its size by 2^-20 at most).
 constexpr double flat_share = 0x1p-40;
 

@@ -1,4 +1,4 @@
-// The segments of a catheter among walls. A step looks ahead: each solve gives places to go to, and all touches of points
+// The segments of a catheter among walls. A step looks ahead. Each solve gives places to go to, and all touches of points
 // and segments on the straight way there become walls of the next solve. The points go only once that way is proved free.
 //
 // While walls move, the catheter is a partner of a joint move (solids/joint_move.hpp):

@@ -16,7 +16,7 @@ using SimplexEdges = std::array<Vec3, 3>;
 SimplexEdges edges_of(const Corners& v) { return {v[1] - v[0], v[2] - v[0], v[3] - v[0]}; }
 
 // The edges from corner 0 at the time t. Each axis is measured in its largest difference, so no coordinate is above 1
-// by more than rounding. They are off by at most 2^-39 (1 + 2^-10) from their values at any time until t + 2^-40: an
+// by more than rounding. They are off by at most 2^-39 (1 + 2^-10) from their values at any time until t + 2^-40. An
 // edge moves by 2 in a step, and four operations are rounded.
 SimplexEdges scaled_edges(const Corners& before, const Corners& after, double t) {
   const SimplexEdges p = edges_of(before);

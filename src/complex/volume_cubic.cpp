@@ -120,7 +120,7 @@ bool all_in_exact_range(const Corners& v) { return std::all_of(v.begin(), v.end(
 }  // namespace
 
 // In Bernstein's form the coefficients b are at most 6 m. In units of e m, e = 2^-53, they are off by 180 / 3, and by 6
-// from the division by 3; a split at t rounds three times by 2 * 6, a halving three times by 6.
+// from the division by 3. A split at t rounds three times by 2 * 6, a halving three times by 6.
 bool VolumeCubic::proves_positive_until(double t) const {
   constexpr int halvings = 8;
   constexpr double error = (66.0 + 36.0 + 18.0 * halvings) * 0x1p-53 * (1.0 + 0x1p-10);

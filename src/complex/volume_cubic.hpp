@@ -74,8 +74,8 @@ struct VolumeCubic {
       : VolumeCubic(ends_of(before[0], after[0]), ends_of(before[1], after[1]), ends_of(before[2], after[2]),
                     ends_of(before[3], after[3])) {}
 
-  /// Each coefficient is off by at most this times m: c1 and c2 are 18 products of at most m, each rounded ten times
-  /// (three differences, product, difference, sum, product, two sums, sum), each by e = 2^-53; c0 and c3 are off by
+  /// Each coefficient is off by at most this times m. c1 and c2 are 18 products of at most m, each rounded ten times
+  /// (three differences, product, difference, sum, product, two sums, sum), each by e = 2^-53. c0 and c3 are off by
   /// determinant_error. The last factor is that of determinant_error.
   static constexpr double coefficient_error = 180.0 * 0x1p-53 * (1.0 + 0x1p-10);
 

@@ -21,7 +21,7 @@ class CellLists {
   static constexpr std::uint32_t short_list = 8;
 
   /// Updates the lists to the cells that the states name, after motion, edits, and particles added or removed. Cost:
-  /// a look at each particle, and a constant for each that changed cells; it allocates only if there are more
+  /// a look at each particle, and a constant for each that changed cells. It allocates only if there are more
   /// particles or cells than ever before.
   void update(const CombinatorialMap& map, std::span<const ParticleState> states);
 

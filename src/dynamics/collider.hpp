@@ -30,7 +30,7 @@ inline double near_room(const SphereMotion& s) {
   return s.radius * near_share + std::min(norm(s.displacement), s.radius);
 }
 
-/// Whether a sphere comes so near to another in the step that both are solved together: `gap` is the contact's, without
+/// Whether a sphere comes so near to another in the step that both are solved together. `gap` is the contact's, without
 /// the resting gap, and the velocities are those before impulses. Their directions do not matter, because walls turn them.
 inline bool in_reach(double gap, const Vec3& a, const Vec3& b, double dt) { return gap <= (norm(a) + norm(b)) * dt; }
 
@@ -63,7 +63,7 @@ struct CollidingSpheres {
 /// Keeps lists, impulses and memory from step to step.
 class Collider {
  public:
-  /// Finds the pairs and solves them together with `walls`, whose gaps are those of the geometry; this function
+  /// Finds the pairs and solves them together with `walls`, whose gaps are those of the geometry. This function
   /// subtracts the resting gaps, and leaves lone spheres to their own step (leave_lone_spheres()). Pairs with a wall
   /// between their centres do not meet. Precondition: the states are of the complex as it stands. Throws as
   /// ContactSolver::solve(). The result is the same for any number of threads and any order of particles.

@@ -26,7 +26,7 @@ void ContactPackets::find_parts(std::span<const ContactEnds> contacts, std::span
   }
 }
 
-// All contacts of a body within its region come before those between regions, so one counter serves for both: it
+// All contacts of a body within its region come before those between regions, so one counter serves for both. It
 // starts again with the last part.
 void ContactPackets::find_levels(std::span<const ContactEnds> contacts, std::span<const ContactBody> bodies) {
   for (const bool between : {false, true}) {

@@ -2,14 +2,14 @@
 //
 // A contact reads and writes the velocities of its two bodies alone. So contacts that share no body may change
 // places, or be solved at once, and no bit changes. Each contact is put into the first level behind those of all
-// earlier contacts of its bodies; levels are stored one after the other, four contacts to a packet. Forwards or
+// earlier contacts of its bodies. Levels are stored one after the other, four contacts to a packet. Forwards or
 // backwards through the packets, the result is that of the contacts one by one, in the order of the caller.
 //
-// If bodies are divided into regions, the contacts within each region are a part that is solved beside the others;
-// those between regions are the last part, which is solved behind them. In a part the order is that of the caller.
+// If bodies are divided into regions, the contacts within each region are a part that is solved beside the others.
+// Those between regions are the last part, which is solved behind them. In a part the order is that of the caller.
 // Regions are slices of space, so few contacts are in the last part, and impulses pass through a region in one
 // iteration. Groups of contacts without a common body ("colours") would have no serial part, but a heap of 10^4 spheres
-// then overlaps nine times as deep: an impulse passes one contact in an iteration.
+// then overlaps nine times as deep. An impulse passes one contact in an iteration.
 #pragma once
 
 #include <array>
@@ -83,9 +83,9 @@ struct alignas(64) PacketCorrections {
 class ContactPackets {
  public:
   /// Sorts the contacts into packets; one of the terms for each. `regions`: of each body, for those that move, below
-  /// `region_count`; not read if that is 1. The last region_count + 1 bodies fill packets that are not full: they
+  /// `region_count`; not read if that is 1. The last region_count + 1 bodies fill packets that are not full. They
   /// must be in no contact, and have no velocity and an inverse mass of 0. Contacts of a body whose inverse mass is 0
-  /// do not wait for each other; if there are regions, such a body is in one contact at most. Cost: some 20 ns a
+  /// do not wait for each other. If there are regions, such a body is in one contact at most. Cost: some 20 ns a
   /// contact; no allocation in steady state.
   void assign(std::span<const ContactEnds> contacts, std::span<const ContactTerms> terms,
               std::span<const ContactBody> bodies, std::span<const std::uint8_t> regions, std::size_t region_count,

@@ -114,7 +114,7 @@ struct NearWalls::Reach {
     box.widen(radius);
     is_long = norm(way) > 2.0 * radius;
   }
-  // A point's tube is around its way. An edge's is around the edge at the time 1/2: no point of the edge is ever farther
+  // A point's tube is around its way. An edge's is around the edge at the time 1/2. No point of the edge is ever farther
   // from where it is then than half the largest displacement of the ends. A triangle has none.
   Reach(const MovingElement& e, double margin) : box{e.from[0], e.from[0]} {
     double farthest = 0.0;

@@ -39,7 +39,7 @@ struct NearestOnTriangle {
                              ///< inside
 };
 
-/// Rounded to a few units in the last place of the largest distance between the centre and a corner; in a triangle that
+/// Rounded to a few units in the last place of the largest distance between the centre and a corner. In a triangle that
 /// is nearly flat the point may be off along it. Cost: about 0.1 us.
 NearestOnTriangle nearest_on_triangle(const std::array<Vec3, 3>& corners, const Vec3& centre);
 

@@ -28,7 +28,7 @@ struct Digits {
   }
 };
 
-// The rule for coordinates (dartcast/predicates.hpp), in words of its own: no point is above 2^300; no particle is
+// The rule for coordinates (dartcast/predicates.hpp), in words of its own: no point is above 2^300. No particle is
 // between 0 and 2^-300, and a corner that is there counts as 0.
 inline bool is_in_range(const Vec3& p) {
   return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) < 0x1.0000000000001p+300 && p == p;

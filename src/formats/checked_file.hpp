@@ -1,4 +1,4 @@
-// The part that meshes and surfaces in files share: nothing in a file throws, and a caller who asks for a valid one
+// The part that meshes and surfaces in files share. Nothing in a file throws, and a caller who asks for a valid one
 // gets the reason if it is not.
 #pragma once
 

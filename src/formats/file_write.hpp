@@ -13,7 +13,7 @@ inline constexpr std::string_view part_ending = ".part";
 /// Writes the pieces to a file, one after the other, over what it held. Throws Error if that fails.
 void write_pieces(const std::filesystem::path& path, std::span<const std::string_view> pieces);
 
-/// Writes the pieces to a file beside the path, which then takes its place: whenever the process ends, the path names
+/// Writes the pieces to a file beside the path, which then takes its place. Whenever the process ends, the path names
 /// the old file or the new one, whole. Throws Error, with the path's name, if that fails; the old file is left then.
 void replace_file(const std::filesystem::path& path, std::span<const std::string_view> pieces);
 

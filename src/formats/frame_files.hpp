@@ -12,7 +12,7 @@
 namespace dartcast {
 
 /// Makes a reader of frame k from file k, its points multiplied by `scale`. Each frame has the points of `mesh`, which is that
-/// of the scene, in the same order; null: it is not known here, and all have as many as the first. Checks that all files
+/// of the scene, in the same order. Null: it is not known here, and all have as many as the first. Checks that all files
 /// exist, and reads the first one. Throws InvalidMesh, with the file's name, if one is missing, or the first is refused or has
 /// another number of points. The reader throws Error with frame and file if that holds for a later one. Several threads may
 /// call it at once. Precondition: at least one file.

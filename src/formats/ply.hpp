@@ -8,7 +8,7 @@
 namespace dartcast {
 
 /// Elements vertex (x, y, z of any type) and face (a list vertex_indices or vertex_index of any type of whole
-/// numbers); other elements and properties are ignored. Throws InvalidMesh with the line, or the byte in binary
+/// numbers). Other elements and properties are ignored. Throws InvalidMesh with the line, or the byte in binary
 /// parts, if the content is not right.
 ParsedSurface parse_ply(std::string_view content);
 

@@ -21,7 +21,7 @@ namespace dartcast {
 /// cell array options.patch_array. If that is empty, the array `patch` counts, else the array of the regions
 /// (ReadOptions). Names come from arrays of texts, or from the field arrays `region_names` and `patch_names` of
 /// write_vtu(). In a file without cells of three dimensions those of two are the cells, and lines of two points
-/// (poly-lines piece by piece) the faces that patches are made of; points, and otherwise lines, are left out. The cell
+/// (poly-lines piece by piece) the faces that patches are made of. Points, and otherwise lines, are left out. The cell
 /// array `free` says which cells are free if the field array free_writer of write_vtu() stands in the file.
 /// `content` is the content of the file, and the path is not used. Throws InvalidMesh.
 ParsedMesh parse_vtu(const std::filesystem::path& path, std::string_view content, const ReadOptions& options = {});

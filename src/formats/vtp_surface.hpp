@@ -19,7 +19,7 @@ ParsedSurface parse_vtp_surface(std::string_view content, std::uint64_t max_memo
 /// .vtu alone.
 bool is_simvascular(const std::filesystem::path& folder);
 
-/// The mesh of such a folder. Each .vtp file in mesh-surfaces is a patch with the file's name; its points are those of
+/// The mesh of such a folder. Each .vtp file in mesh-surfaces is a patch with the file's name. Its points are those of
 /// the mesh with the same GlobalNodeID, or at the same place if they have none. Throws InvalidMesh with the file.
 ParsedMesh parse_simvascular(const std::filesystem::path& folder, const ReadOptions& options);
 

@@ -25,7 +25,7 @@ XmlDataSet vtu_data_set(const std::shared_ptr<const MeshData>& mesh);
 XmlArray vtu_points(std::span<const Vec3> points, std::shared_ptr<const void> owner);
 
 /// Writes cells, patch faces and arrays so that a reader of .vtu finds the same bits. `free`, the regions and the patches
-/// become the cell arrays `free`, `region` and `patch`, in place of cell arrays of these names; with `free` stands the field
+/// become the cell arrays `free`, `region` and `patch`, in place of cell arrays of these names. With `free` stands the field
 /// array free_writer. Names of regions and patches, and the tags of baffles, are field arrays. The bytes are raw. Throws Error if the file cannot be written.
 void write_vtu(const MeshData& mesh, const std::filesystem::path& path);
 

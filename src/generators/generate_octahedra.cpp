@@ -13,8 +13,8 @@
 namespace dartcast {
 namespace {
 
-// A lattice point, in quarters of a cube. Middles of octahedra have coordinates that are all 2 or all 0 modulo 4;
-// around a middle at 0 the 24 corners are the permutations of (0, +-1, +-2).
+// A lattice point, in quarters of a cube. Middles of octahedra have coordinates that are all 2 or all 0 modulo 4.
+// Around a middle at 0 the 24 corners are the permutations of (0, +-1, +-2).
 using LatticePlace = std::array<int, 3>;
 
 constexpr LatticePlace operator+(const LatticePlace& a, const LatticePlace& b) {

@@ -51,7 +51,7 @@ class SquaresBuilder {
   }
 
   // With every square cut from its lowest corner to its highest, (i + j) mod 3 is a different number at the three
-  // corners of each triangle: around the points with 0 there are hexagons that do not overlap.
+  // corners of each triangle. Around the points with 0 there are hexagons that do not overlap.
   void choose_merges() {
     number_.assign((std::size_t{nx_} + 1) * (std::size_t{ny_} + 1), 0);
     if (!o_.mixed && o_.type != CellType::polygon) return;

@@ -27,7 +27,7 @@ inline std::int32_t region_of(const MeshData& mesh, std::size_t c) {
 /// polygon.
 std::span<const std::vector<std::uint8_t>> standard_faces(CellType type);
 
-/// Calls visit(span of point indices) for each face of cell c, counterclockwise seen from the outside; in the plane,
+/// Calls visit(span of point indices) for each face of cell c, counterclockwise seen from the outside. In the plane,
 /// for each edge in the direction of the cell's corners. Precondition: the cell's connectivity is well formed (see
 /// check_and_repair()).
 template <class Visit>

@@ -10,7 +10,7 @@
 namespace dartcast::detail {
 
 /// Takes out edges that are no segments, longest first, as long as the cells are strictly convex and have at most
-/// `max_corners` corners; no edge that is left could be taken out. For each half-edge the next one around its cell;
+/// `max_corners` corners. No edge that is left could be taken out. For each half-edge the next one around its cell;
 /// PlanarTriangulation::none for those taken out. Decided by exact signs; in n log n.
 ///
 /// This work is based on S. Hertel and K. Mehlhorn, "Fast triangulation of simple polygons", 1983: unless max_corners

@@ -82,7 +82,7 @@ Votes count_faces(const MeshData& mesh, std::size_t c) {
 }
 
 /// A closed polygon whose corners all turn left or go straight is weakly convex exactly if its edges turn from
-/// forward to backward, in the order of coordinates, once: then it is two chains between its first and its last corner,
+/// forward to backward, in the order of coordinates, once. Then it is two chains between its first and its last corner,
 /// each bent one way only. More turns are more rounds, or edges that go back on themselves.
 Orientation orient_polygon(const MeshData& mesh, std::size_t c) {
   const auto cell = mesh.cell(c);

@@ -53,7 +53,7 @@ MeshData free_cells(const MeshData& mesh) {
   return out;
 }
 
-/// Twice the projected area of a face, or the normal of an edge in the plane, over the square of the face's size: no
+/// Twice the projected area of a face, or the normal of an edge in the plane, over the square of the face's size. No
 /// product of coordinates overflows or vanishes. Outwards.
 Vec3 wall_normal(const MeshData& mesh, std::span<const std::uint32_t> face) {
   const Vec3& first = mesh.points[face[0]];

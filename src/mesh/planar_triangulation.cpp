@@ -45,7 +45,7 @@ PlanarTriangulation::PlanarTriangulation(std::span<const Vec3> points) : points_
   now_.assign(origin_.size(), none);
 }
 
-/// Rounds of twice as many points each, at random, so that few triangles are made in vain, whatever the points; within
+/// Rounds of twice as many points each, at random, so that few triangles are made in vain, whatever the points. Within
 /// a round along a curve, so that the way from one to the next is short.
 std::vector<std::uint32_t> PlanarTriangulation::order_of_insertion() const {
   constexpr unsigned bits = 29;

@@ -17,7 +17,7 @@ struct Obstacle {
   std::uint32_t segment;
 };
 
-/// Triangles in half-edges: triangle t has 3 t, 3 t + 1 and 3 t + 2, counterclockwise; each starts at its origin and
+/// Triangles in half-edges: triangle t has 3 t, 3 t + 1 and 3 t + 2, counterclockwise. Each starts at its origin and
 /// has its triangle to the left. Every triangle is strictly positive at all times, by exact signs; the empty-circle
 /// test that makes them well shaped is in doubles. It may be wrong, which affects the shape alone. It ends in any
 /// case: a flip for a new point gives that point an edge, and flips for a segment are counted.

@@ -1,5 +1,5 @@
 // Checks tetrahedra against the surfaces that they were made for. From the box inwards each triangle of a surface leads
-// into the region that it encloses, or out of it again; so the tetrahedra need no marks of the program.
+// into the region that it encloses, or out of it again. So the tetrahedra need no marks of the program.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -141,7 +141,7 @@ class Regions {
     }
   }
 
-  // By the divergence theorem, each triangle seen from outside the region that its surface encloses: its inner side is
+  // By the divergence theorem, each triangle seen from outside the region that its surface encloses. Its inner side is
   // the tetrahedron that lies in the surface.
   [[nodiscard]] std::vector<double> enclosed_volumes() const {
     std::vector<double> enclosed(scene_.surfaces.size(), 0.0);

@@ -1,7 +1,7 @@
 // Opens, fills and closes the output folder of a run.
 //
 // If ranks share the particles, all make the same calls. The first writes all files but the pieces and parts that hold
-// the others' particles; each of these writes its own, and the first names them once they are whole.
+// the others' particles. Each of these writes its own, and the first names them once they are whole.
 #include "output/run_output.hpp"
 
 #include <fmt/format.h>

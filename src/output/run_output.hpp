@@ -21,9 +21,9 @@
 
 namespace dartcast {
 
-/// Without a folder it does nothing. Every function throws Error if a file cannot be read or written; frames, tables
+/// Without a folder it does nothing. Every function throws Error if a file cannot be read or written. Frames, tables
 /// and checkpoints are written by a thread, and the next function throws its errors. The order is that of the calls, and
-/// a checkpoint comes after all that it counts on: a run that is cut off anywhere can go on. If ranks share the
+/// a checkpoint comes after all that it counts on. A run that is cut off anywhere can go on. If ranks share the
 /// particles, each has one, and every function is collective.
 class RunOutput {
  public:

@@ -1,5 +1,5 @@
 // Roots of forms: made square-free by the greatest common divisor with the derivative, then halved in Bernstein's form
-// until one change of sign remains. Signs at roots: the interval is halved until the form has one sign there; after some
+// until one change of sign remains. Signs at roots: the interval is halved until the form has one sign there. After some
 // halvings one common divisor says whether the form is 0 at the root, so it ends always.
 #include "predicates/exact_form.hpp"
 
@@ -194,7 +194,7 @@ void ExactTime::halve() {
   }
 }
 
-// The roots of a divisor of f_ are roots of f_, which has one here, and a simple one: f is 0 at it if the divisor
+// The roots of a divisor of f_ are roots of f_, which has one here, and a simple one. f is 0 at it if the divisor
 // changes its sign over the interval.
 bool ExactTime::is_root_of(const ExactPolynomial& f) const {
   const ExactPolynomial divisor = common_divisor(f_, f);

@@ -143,9 +143,9 @@ bool points_into(const Vec3& v, const JointWalls& walls, double limit) {
   return false;
 }
 
-// The projection onto all walls is that onto three of them at most. They are found as a linear programme's basis is:
-// those that hold the last result back, and the wall that it points into most, hold it back anew. Each time it is
-// farther from v, so that no set of walls comes twice; rounding may end that, and then all of v is given up.
+// The projection onto all walls is that onto three of them at most. They are found as a linear programme's basis is.
+// Those that hold the last result back, and the wall that it points into most, hold it back anew. Each time it is
+// farther from v, so that no set of walls comes twice. Rounding may end that, and then all of v is given up.
 HeldBack held_back(const Vec3& v, const JointWalls& walls) {
   constexpr unsigned max_rounds = 32;
   HeldBack held;
@@ -176,7 +176,7 @@ Vec3 shortened(const Vec3& velocity, double limit, const Vec3& lead) {
     const double share = ((root > 0.0 ? std::sqrt(root) : 0.0) - along) / square;
     return velocity * std::clamp(share, 0.0, 1.0);
   }
-  // By the quotient, and a few units in the last place more: each makes components smaller that are not subnormal, and
+  // By the quotient, and a few units in the last place more. Each makes components smaller that are not subnormal, and
   // others do not count in the square.
   Vec3 result = velocity * std::sqrt(limit / square);
   while (dot(result, result) > limit) result *= 1.0 - 0x1p-52;

@@ -30,7 +30,7 @@ struct Range {
 inline constexpr Range Range::positive = {0.0, Range::unlimited, true};
 inline constexpr Range Range::not_negative = {0.0, Range::unlimited};
 
-/// A table of a scene. Each getter leaves `value` as it is if the key is absent, and throws Error with file, line,
+/// A table of a scene. Each getter leaves `value` as it is if the key is absent. It throws Error with file, line,
 /// key, what is expected and what stands there, if it is of the wrong type or out of range.
 class TomlTable {
  public:

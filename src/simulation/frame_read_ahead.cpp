@@ -66,7 +66,7 @@ FrameReadAhead::Frames FrameReadAhead::get(std::span<const std::size_t> frames) 
   return found;
 }
 
-// Throws the error of the first frame that could not be read, if one is among the first ones up to this place: behind it
+// Throws the error of the first frame that could not be read, if one is among the first ones up to this place. Behind it
 // no further one has been read.
 void FrameReadAhead::rethrow_error(std::size_t last) const {
   for (std::size_t k = 0; k <= last; ++k) {

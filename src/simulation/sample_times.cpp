@@ -52,8 +52,8 @@ SampleWeights SampleTimes::at(double time) const {
   return {2, {first, second.sample}, {1 - share, share}};
 }
 
-// Hermite's cubic between two samples. The velocity at a sample is that of the parabola through it and its neighbours;
-// at the first and the last one of a series that does not repeat it is that of the straight way.
+// Hermite's cubic between two samples. The velocity at a sample is that of the parabola through it and its neighbours.
+// At the first and the last one of a series that does not repeat it is that of the straight way.
 SampleWeights SampleTimes::cubic(std::size_t first, const Neighbour& second, double share) const {
   const double s = share, h = second.distance;
   std::array<double, 4> w = {0.0, (1 + 2 * s) * (1 - s) * (1 - s), s * s * (3 - 2 * s), 0.0};

@@ -11,7 +11,7 @@
 namespace dartcast {
 
 /// Which samples count at a time, in the order of their times, and their weights, which sum to 1. In a cycle that is as
-/// long as its samples, the first and the last one are neighbours without a distance: one of them is left out.
+/// long as its samples, the first and the last one are neighbours without a distance. One of them is left out.
 struct SampleWeights {
   std::size_t count = 1;
   std::array<std::size_t, 4> samples = {};

@@ -18,7 +18,7 @@
 namespace dartcast {
 
 /// The tools of a simulation. One that turns goes on chords of its arcs, in slices of a step. If the vertices of the
-/// environment move, solids and walls make their step together, with all else that stops walls: then the particles' step
+/// environment move, solids and walls make their step together, with all else that stops walls. Then the particles' step
 /// calls move_with() in place of Environment::move().
 class SolidsComponent final : public SimulationComponent {
  public:

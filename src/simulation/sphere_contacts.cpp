@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t wall_grain = 256;
 
 // The solver takes walls within this share of the radius. A sphere meets farther walls by its own step, with the true
-// contact: the nearest point of a far wall says little about the point that is touched.
+// contact. The nearest point of a far wall says little about the point that is touched.
 constexpr double wall_share = 0.25;
 
 // The wall as the solver sees it, which lets spheres rest on it; none if a sphere must meet it by its own step.

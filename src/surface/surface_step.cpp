@@ -24,7 +24,7 @@ using detail::Unfolded;
 
 constexpr double pi = std::numbers::pi;
 
-// A direction that is meant to run along a wall, and differs from it by no more than this, runs along it exactly: the
+// A direction that is meant to run along a wall, and differs from it by no more than this, runs along it exactly. The
 // difference is rounding. Nothing else depends on it.
 constexpr double rounding_of_angles = 1e-12;
 

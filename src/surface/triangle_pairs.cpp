@@ -1,5 +1,5 @@
 // Two triangles meet if an edge of one meets the other one. If they share a corner, the part in common that begins
-// there ends at an edge opposite to it; if they share an edge, they meet beyond it only in one plane.
+// there ends at an edge opposite to it. If they share an edge, they meet beyond it only in one plane.
 #include "surface/triangle_pairs.hpp"
 
 #include <algorithm>

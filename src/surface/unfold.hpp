@@ -39,7 +39,7 @@ Unfolded unfold(const Vec3& a, const Vec3& b, const Vec3& c);
 Frame frame_of(const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// The heading relative to another edge of the triangle: that from corner 1 (the base's end) to corner 2 (the apex), or
-/// from 2 to 0; `edge` is the number of the corner where the edge starts.
+/// from 2 to 0. `edge` is the number of the corner where the edge starts.
 Heading turned_to(const Unfolded& t, unsigned edge, const Heading& h);
 
 /// The angle at corner 0, in (0, pi).

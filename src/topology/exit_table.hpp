@@ -1,4 +1,4 @@
-// The ways from simplex to simplex of a shape, for walks that must not branch: a facet within the cell and a triangle
+// The ways from simplex to simplex of a shape, for walks that must not branch. A facet within the cell and a triangle
 // of a face are passed by the same operations (tracking/batch/batch_line_walks.inl).
 //
 // A *row* is a simplex and one of its facets: 4 * simplex + facet. Its corners have an order: if the simplex is

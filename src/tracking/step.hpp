@@ -28,7 +28,7 @@ struct StepSetting {
 /// Carries particles through one step of a complex. A plain reader of the complex: any number may run at once.
 class Stepper {
  public:
-  /// `moved`: the complex's positions have been committed for this step; targets then are relative to positions before
+  /// `moved`: the complex's positions have been committed for this step. Targets then are relative to positions before
   /// the move (they are absolute points, computed by the caller from where the particle was).
   Stepper(const CellComplex& complex, bool moved, const StepOptions& options, const ContactCallback& respond)
       : setting_{complex, moved, options, respond} {}

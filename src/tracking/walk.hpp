@@ -6,7 +6,7 @@
 //
 // Up to there it is the walk of the shifted segment. The shifted walk leaves a simplex by the first facet that the
 // shifted q is beyond. Suppose that q itself is strictly beyond some facet. Then a facet whose plane holds q is never
-// the first: the segment meets that plane at its end, or lies in it and is shifted to the inner side, since the shifted
+// the first. The segment meets that plane at its end, or lies in it and is shifted to the inner side, since the shifted
 // segment passes through the simplex. So only facets that q is strictly beyond count, and ties occur only between two
 // of these.
 #pragma once

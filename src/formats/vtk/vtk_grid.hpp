@@ -80,7 +80,7 @@ struct PointRange {
 void add_cell(std::uint8_t type, std::span<const std::int64_t> ids, const PointRange& range, VtkGrid& grid);
 
 /// Reads one of VTK's XML files of a kind, "UnstructuredGrid" or "PolyData". Tags, sections and names are checked as
-/// read_vtk_xml() does, and the length of each array: it follows from the counts of points and cells, and from the last
+/// read_vtk_xml() does, and the length of each array. It follows from the counts of points and cells, and from the last
 /// offset. The data must hold it, in ASCII, base64 or raw, inline or appended, compressed or not. A compressed block may
 /// not grow more than 1100 times. The memory for the announced sizes is checked before any data are decoded
 /// (`max_memory`: as of ReadOptions). Without `with_data` the arrays at points and cells are left out, and only their
