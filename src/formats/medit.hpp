@@ -1,4 +1,4 @@
-// Medit's .mesh (ASCII).
+// Medit's .mesh (ASCII) and .meshb (binary, GMF).
 #pragma once
 
 #include <string>
@@ -12,6 +12,9 @@ namespace dartcast {
 /// without volume cells those of triangles and quadrilaterals, and of edges. Throws InvalidMesh with the line if the
 /// content is not right, or with the name of another format.
 ParsedMesh parse_medit(std::string_view content, bool linearise = false);
+
+/// As parse_medit(), for versions 1 to 4 of either byte order. Throws InvalidMesh with the byte.
+ParsedMesh parse_meshb(std::string_view content, bool linearise = false);
 
 /// The mesh in Medit's format, of dimension 2 in the plane, every coordinate with the digits it needs to be read back
 /// exactly; regions and patches as references. Precondition: no polyhedra, and no polygons or

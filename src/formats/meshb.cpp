@@ -1,5 +1,5 @@
 // Reads Medit's binary .meshb section by section. Each says where the next one begins.
-#include "formats/meshb.hpp"
+#include "formats/medit.hpp"
 
 #include <fmt/format.h>
 

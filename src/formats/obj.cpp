@@ -1,5 +1,5 @@
 // Reads Wavefront's .obj line by line.
-#include "formats/obj.hpp"
+#include "formats/surface_formats.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // Reads Geomview's .off.
-#include "formats/off.hpp"
+#include "formats/surface_formats.hpp"
 
 #include <cstdint>
 #include <vector>

@@ -1,5 +1,5 @@
 // Reads Stanford's .ply: the header, then each element in ASCII or binary.
-#include "formats/ply.hpp"
+#include "formats/surface_formats.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // Reads .stl, ASCII and binary, and joins equal corners.
-#include "formats/stl.hpp"
+#include "formats/surface_formats.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // Reads the events of a scene.
-#include "scene/scene_events.hpp"
+#include "scene/scene_keys.hpp"
 
 #include <limits>
 

@@ -1,5 +1,5 @@
 // Reads the keys of a scene's fields.
-#include "scene/scene_fields.hpp"
+#include "scene/scene_keys.hpp"
 
 #include <fmt/format.h>
 

@@ -11,11 +11,7 @@
 
 #include "dartcast/error.hpp"
 #include "formats/file_series.hpp"
-#include "scene/scene_events.hpp"
-#include "scene/scene_fields.hpp"
-#include "scene/scene_mesh_keys.hpp"
-#include "scene/scene_solids.hpp"
-#include "scene/scene_statistics.hpp"
+#include "scene/scene_keys.hpp"
 #include "scene/toml_table.hpp"
 
 namespace dartcast {

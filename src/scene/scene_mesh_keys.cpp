@@ -1,5 +1,5 @@
 // Reads the [environment] table of a scene.
-#include "scene/scene_mesh_keys.hpp"
+#include "scene/scene_keys.hpp"
 
 #include <fmt/format.h>
 

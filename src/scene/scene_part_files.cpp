@@ -15,7 +15,6 @@
 #include "parts/part_cutter.hpp"
 #include "scene/scene_mesh.hpp"
 #include "simulation/scene_environment.hpp"
-#include "simulation/scene_part.hpp"
 
 namespace dartcast {
 

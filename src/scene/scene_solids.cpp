@@ -1,5 +1,5 @@
 // Reads the bodies, catheters and solids of a scene.
-#include "scene/scene_solids.hpp"
+#include "scene/scene_keys.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,5 +1,5 @@
 // Reads the table [statistics].
-#include "scene/scene_statistics.hpp"
+#include "scene/scene_keys.hpp"
 
 #include <fmt/format.h>
 
