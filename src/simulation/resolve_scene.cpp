@@ -1,4 +1,6 @@
 // Looks up in a mesh what a scene names: arrays, patches and regions.
+#include <fmt/format.h>
+
 #include <memory>
 #include <string>
 #include <utility>
@@ -10,7 +12,6 @@
 #include "simulation/mesh_arrays.hpp"
 #include "simulation/resolved_scene.hpp"
 #include "simulation/scene_environment.hpp"
-#include "simulation/scene_part.hpp"
 
 namespace dartcast {
 
@@ -52,6 +53,32 @@ std::vector<DeformationStep> steps_of(const std::vector<DeformationScene>& scene
     DeformationStep& step = steps.emplace_back(s.step);
     if (!s.field.empty()) step.field = field_values(mesh, s.field, FieldPlace::points);
     if (!s.path.empty()) step.path = point_values(mesh, s.path, 1);
+  }
+  return steps;
+}
+
+template <class T>
+void select(std::vector<T>& values, std::span<const std::uint32_t> which) {
+  if (values.empty()) return;
+  std::vector<T> some;
+  some.reserve(which.size());
+  for (const std::uint32_t i : which) some.push_back(values[i]);
+  values = std::move(some);
+}
+
+// Steps for the points of a part, of those for the whole mesh.
+std::vector<DeformationStep> steps_of_part(std::vector<DeformationStep> steps, std::span<const std::uint32_t> points) {
+  const std::vector<std::uint32_t> which(points.begin(), points.end());
+  for (DeformationStep& s : steps) {
+    for (std::vector<Vec3>& frame : s.frames) select(frame, which);
+    if (!s.reader) continue;
+    s.reader = [read = std::move(s.reader), which](std::size_t frame) {
+      std::vector<Vec3> positions = read(frame);
+      if (!positions.empty() && positions.size() <= which.back())
+        throw InvalidMesh(fmt::format("frame {} has {} points: the mesh has more", frame, positions.size()));
+      select(positions, which);
+      return positions;
+    };
   }
   return steps;
 }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "dartcast/mesh_data.hpp"
+#include "dartcast/mesh_part.hpp"
+#include "dartcast/ranks.hpp"
 #include "dartcast/scene.hpp"
 
 namespace dartcast {
@@ -21,5 +23,12 @@ void check_patches(const Scene& scene, const MeshData& mesh);
 /// The mesh with scale, free cells and patches as the scene says. Throws InvalidArgument if something must be read
 /// first, and InvalidMesh.
 MeshData scene_mesh(const EnvironmentScene& scene);
+
+/// Throws InvalidArgument, which names it, if a scene has something that needs the whole environment on one rank.
+void check_can_be_spread(const Scene& scene);
+
+/// The rank's part of the scene's mesh, which may be given as such. Throws as partition(), and InvalidArgument if the part
+/// is of another rank.
+MeshPart scene_part(const EnvironmentScene& scene, const Ranks& ranks);
 
 }  // namespace dartcast

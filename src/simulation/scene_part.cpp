@@ -1,6 +1,4 @@
 // Cuts a rank's part out of a scene.
-#include "simulation/scene_part.hpp"
-
 #include <fmt/format.h>
 
 #include <string_view>
@@ -20,15 +18,6 @@ void refuse_if(bool has, std::string_view what) {
         "partition: a scene with {} cannot be spread by cells: leave --partition cells out, and the ranks share "
         "its particles",
         what));
-}
-
-template <class T>
-void select(std::vector<T>& values, std::span<const std::uint32_t> which) {
-  if (values.empty()) return;
-  std::vector<T> some;
-  some.reserve(which.size());
-  for (const std::uint32_t i : which) some.push_back(values[i]);
-  values = std::move(some);
 }
 
 }  // namespace
@@ -64,22 +53,6 @@ MeshPart scene_part(const EnvironmentScene& scene, const Ranks& ranks) {
   MeshData whole = std::holds_alternative<MeshData>(scene.mesh) ? std::get<MeshData>(scene.mesh) : scene_mesh(scene);
   check_and_repair(whole);  // a part of it must not be repaired in another way
   return mesh_part(whole, partition(whole, ranks.size()), ranks.size(), ranks.rank());
-}
-
-std::vector<DeformationStep> steps_of_part(std::vector<DeformationStep> steps, std::span<const std::uint32_t> points) {
-  const std::vector<std::uint32_t> which(points.begin(), points.end());
-  for (DeformationStep& s : steps) {
-    for (std::vector<Vec3>& frame : s.frames) select(frame, which);
-    if (!s.reader) continue;
-    s.reader = [read = std::move(s.reader), which](std::size_t frame) {
-      std::vector<Vec3> positions = read(frame);
-      if (!positions.empty() && positions.size() <= which.back())
-        throw InvalidMesh(fmt::format("frame {} has {} points: the mesh has more", frame, positions.size()));
-      select(positions, which);
-      return positions;
-    };
-  }
-  return steps;
 }
 
 }  // namespace dartcast
