@@ -63,13 +63,15 @@ _SurfaceRespond = Callable[[SurfaceContact], Union[AfterSurfaceContact, Vector, 
 '''
 #: The modules with what no simple program needs, and their headers.
 MODULES = {
-    "predicates": ("Exact signs of determinants, and the bounds of numbers.", "contact dynamics predicates validity"),
+    "predicates": ("Exact signs of determinants, and the bounds of numbers.", "dynamics predicates validity"),
     "topology": ("Maps and complexes, and their edits.", "cell_complex cell_shape combinatorial_map complex_edit cutting "
                  "map_edits particle_state remeshing surface"),
     "formats": ("Files of meshes, scenes and runs, and the scenes in them.", "decompose generators mesh_check mesh_data "
                 "mesh_files mesh_part mesh_selection plan report run scene scene_file statistics_files trajectory"),
     "records": ("Options of options, and results of calls.", ""),
 }
+IDS = "".join(f"from ._ids import {name} as {name}\n" for name in
+              ("Cell", "CellFace", "CellHandle", "Dart", "Patch", "SimplexId", "Vertex"))
 NUMBERS = ("Cell", "Vertex", "Patch")
 PAIRS = ("Dart", "CellFace", "SimplexId", "CellHandle")
 #: What an argument may be, and what a result is.
@@ -294,7 +296,8 @@ class Stub:
                 names[next((m for m, (_, headers) in MODULES.items() if header[:-4] in headers.split()), "records")].append(name)
         return {module: f'"""{MODULES[module][0]} Written by tools/make_stub.py."""\nfrom ._core import (\n' +
                 textwrap.fill(", ".join(f"{name}@as@{name}" for name in sorted(found)), 118, initial_indent="    ",
-                              subsequent_indent="    ").replace("@", " ") + ")\n" for module, found in names.items()}
+                              subsequent_indent="    ").replace("@", " ") + ")\n" + (IDS if module == "topology" else "")
+                for module, found in names.items()}
 
 
 def main() -> int:

@@ -5,7 +5,7 @@ from mpi4py import MPI
 import dartcast
 
 ranks = dartcast.mpi_ranks(MPI.COMM_WORLD)
-box = dartcast.BoxOptions(cells=[40, 40, 40], size=[40.0, 40.0, 40.0])
+box = dartcast.formats.BoxOptions(cells=[40, 40, 40], size=[40.0, 40.0, 40.0])
 environment = dartcast.SharedEnvironment(dartcast.formats.box_part(box, ranks.size, ranks.rank), ranks)
 particles = dartcast.SharedParticles()
 starts = np.column_stack([0.04 * np.arange(1000), np.full(1000, 20.0), np.full(1000, 20.0)])

@@ -8,7 +8,7 @@ import numpy as np
 
 import dartcast as dc
 
-mesh = dc.generate_octahedra(dc.OctahedraOptions(cells=[6, 6, 6], size=[1.0, 1.0, 1.0], blocked_share=0.3, seed=1))
+mesh = dc.generate_octahedra(cells=[6, 6, 6], size=[1.0, 1.0, 1.0], blocked_share=0.3, seed=1)
 environment = dc.Environment(mesh)
 side = np.linspace(-0.1, 1.2, 1000)
 x, z = np.meshgrid(side, side)

@@ -1,12 +1,11 @@
 """Exact signs of determinants, and the bounds of numbers. Written by tools/make_stub.py."""
 from ._core import (
-    ALONG_SHARE as ALONG_SHARE, CachedImpulse as CachedImpulse, CellInversion as CellInversion,
-    CollisionCounts as CollisionCounts, ContactCallback as ContactCallback, DETERMINANT_ERROR as DETERMINANT_ERROR,
-    INVERSION_RESOLUTION as INVERSION_RESOLUTION, InversionKind as InversionKind,
-    LARGEST_DECIDED_EXTENT as LARGEST_DECIDED_EXTENT, LARGEST_EXTENT as LARGEST_EXTENT,
-    LARGEST_MAGNITUDE as LARGEST_MAGNITUDE, LARGEST_MASS as LARGEST_MASS, LARGEST_RADIUS as LARGEST_RADIUS,
-    Mat3 as Mat3, PLANE_ERROR as PLANE_ERROR, PlanarSymbolicPerturbation as PlanarSymbolicPerturbation,
-    Quaternion as Quaternion, RigidMover as RigidMover, SHARE_TOGETHER as SHARE_TOGETHER,
+    CachedImpulse as CachedImpulse, CellInversion as CellInversion, CollisionCounts as CollisionCounts,
+    DETERMINANT_ERROR as DETERMINANT_ERROR, INVERSION_RESOLUTION as INVERSION_RESOLUTION,
+    InversionKind as InversionKind, LARGEST_DECIDED_EXTENT as LARGEST_DECIDED_EXTENT,
+    LARGEST_EXTENT as LARGEST_EXTENT, LARGEST_MAGNITUDE as LARGEST_MAGNITUDE, LARGEST_MASS as LARGEST_MASS,
+    LARGEST_RADIUS as LARGEST_RADIUS, Mat3 as Mat3, PLANE_ERROR as PLANE_ERROR,
+    PlanarSymbolicPerturbation as PlanarSymbolicPerturbation, Quaternion as Quaternion, RigidMover as RigidMover,
     SMALLEST_EXTENT as SMALLEST_EXTENT, SMALLEST_MAGNITUDE as SMALLEST_MAGNITUDE, SMALLEST_MASS as SMALLEST_MASS,
     SPHERE_TIME_BOUND as SPHERE_TIME_BOUND, Sign as Sign, SimplexInversion as SimplexInversion,
     SymbolicPerturbation as SymbolicPerturbation, TOUCHING_BOUND as TOUCHING_BOUND, Validity as Validity,

@@ -1,19 +1,21 @@
 """Maps and complexes, and their edits. Written by tools/make_stub.py."""
 from ._core import (
-    Across as Across, AcrossEdge as AcrossEdge, AfterSurfaceContact as AfterSurfaceContact,
+    Across as Across, AcrossEdge as AcrossEdge, AfterSurfaceContact as AfterSurfaceContact, BladePath as BladePath,
     CarveOptions as CarveOptions, Carved as Carved, Carving as Carving, CellComplex as CellComplex,
     CellDraft as CellDraft, CellView as CellView, CombinatorialMap as CombinatorialMap, ComplexEdit as ComplexEdit,
-    ComplexEditReport as ComplexEditReport, CreatedVertex as CreatedVertex, DraftCorner as DraftCorner,
-    DraftFace as DraftFace, DraftForm as DraftForm, DraftLink as DraftLink, EditReport as EditReport,
-    Forecast as Forecast, GoneTriangle as GoneTriangle, InvalidCell as InvalidCell, LeftCell as LeftCell,
-    MendedRegion as MendedRegion, Mending as Mending, MergedVertex as MergedVertex, ParticleState as ParticleState,
-    PlacedVertex as PlacedVertex, Placement as Placement, ReconnectOptions as ReconnectOptions,
-    Reconnected as Reconnected, Reconnection as Reconnection, RepairOptions as RepairOptions,
-    RepairReport as RepairReport, SURFACE_PLACE as SURFACE_PLACE, Section as Section,
-    SectionOptions as SectionOptions, Shape as Shape, ShapeKey as ShapeKey, SplitEdge as SplitEdge,
-    Subdivided as Subdivided, Subdivision as Subdivision, SurfaceContact as SurfaceContact,
-    SurfaceCrossing as SurfaceCrossing, SurfaceEditReport as SurfaceEditReport, SurfaceEnd as SurfaceEnd,
-    SurfaceLocation as SurfaceLocation, SurfaceReport as SurfaceReport, SurfaceStep as SurfaceStep,
+    ComplexEditReport as ComplexEditReport, ConvexTool as ConvexTool, CreatedVertex as CreatedVertex,
+    DraftCorner as DraftCorner, DraftFace as DraftFace, DraftForm as DraftForm, DraftLink as DraftLink,
+    EditReport as EditReport, Forecast as Forecast, GoneTriangle as GoneTriangle, InvalidCell as InvalidCell,
+    LeftCell as LeftCell, Location as Location, MendedRegion as MendedRegion, Mending as Mending,
+    MergedVertex as MergedVertex, ParticleState as ParticleState, PlacedVertex as PlacedVertex,
+    Placement as Placement, Plane as Plane, ReconnectOptions as ReconnectOptions, Reconnected as Reconnected,
+    Reconnection as Reconnection, RepairOptions as RepairOptions, RepairReport as RepairReport,
+    SURFACE_PLACE as SURFACE_PLACE, Section as Section, SectionOptions as SectionOptions, Shape as Shape,
+    ShapeKey as ShapeKey, SplitEdge as SplitEdge, Subdivided as Subdivided, Subdivision as Subdivision,
+    Surface as Surface, SurfaceContact as SurfaceContact, SurfaceCrossing as SurfaceCrossing,
+    SurfaceEdit as SurfaceEdit, SurfaceEditReport as SurfaceEditReport, SurfaceEnd as SurfaceEnd,
+    SurfaceLocation as SurfaceLocation, SurfaceLocator as SurfaceLocator, SurfaceOptions as SurfaceOptions,
+    SurfacePlace as SurfacePlace, SurfaceReport as SurfaceReport, SurfaceStep as SurfaceStep,
     SurfaceTrace as SurfaceTrace, Transaction as Transaction, TyingOptions as TyingOptions, Violation as Violation,
     box_tool as box_tool, capsule_tool as capsule_tool, cell_orbit as cell_orbit, check_integrity as check_integrity,
     coarsen as coarsen, divide_into_simplices as divide_into_simplices, draft_of as draft_of,
@@ -25,3 +27,10 @@ from ._core import (
     split_edge as split_edge, split_face as split_face, subdivide as subdivide, surface_places as surface_places,
     tangent as tangent, to_mesh as to_mesh, unsew as unsew, update_after_edit as update_after_edit,
     vertex_orbit as vertex_orbit)
+from ._ids import Cell as Cell
+from ._ids import CellFace as CellFace
+from ._ids import CellHandle as CellHandle
+from ._ids import Dart as Dart
+from ._ids import Patch as Patch
+from ._ids import SimplexId as SimplexId
+from ._ids import Vertex as Vertex

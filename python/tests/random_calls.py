@@ -30,7 +30,7 @@ class Calls:
         self.make()
 
     def make(self) -> None:
-        box = dc.BoxOptions(cells=[4, 4, 4], size=[4.0, 4.0, 4.0], mixed=True, blocked_share=0.1, jitter=0.2,
+        box = dc.formats.BoxOptions(cells=[4, 4, 4], size=[4.0, 4.0, 4.0], mixed=True, blocked_share=0.1, jitter=0.2,
                             seed=int(self.random.integers(1000)))
         self.environment = dc.Environment(dc.generate_box(box), threads=2)
         self.sets = [dc.Particles() for _ in range(3)]
@@ -108,7 +108,7 @@ class Calls:
             self.refused += 1
             return
         for particles in self.sets:
-            self.environment.update_after_edit(particles, self.random.choice(list(dc.OrphanPolicy)))
+            self.environment.update_after_edit(particles, self.random.choice(list(dc.records.OrphanPolicy)))
 
     def look(self) -> None:
         particles = self.one()

@@ -11,7 +11,7 @@ import numpy as np
 import dartcast as dc
 
 MAX_CELLS = 600  # a world with more cells is made anew
-POLICIES = list(dc.OrphanPolicy)
+POLICIES = list(dc.records.OrphanPolicy)
 
 
 def wrong(state: object, call: Callable[[], object]) -> None:
@@ -53,9 +53,9 @@ class SurfaceCalls:
         self.make()
 
     def make(self) -> None:
-        self.surface = dc.Surface(dc.generate_barrel(staves=8, rows=4, rings=2))
+        self.surface = dc.topology.Surface(dc.generate_barrel(staves=8, rows=4, rings=2))
         self.rest = self.surface.positions.copy()
-        self.places = dc.SurfaceLocator(self.surface).nearest(self.surface, self.random.normal(0.0, 0.3, (20, 3)))[0]
+        self.places = dc.topology.SurfaceLocator(self.surface).nearest(self.surface, self.random.normal(0.0, 0.3, (20, 3)))[0]
 
     def answer(self) -> object:
         restitution = self.random.uniform()
@@ -70,7 +70,7 @@ class SurfaceCalls:
     def step(self) -> None:
         i = self.random.integers(len(self.places))
         row = self.places[i]
-        place = dc.SurfacePlace((int(row["cell"]), int(row["simplex"])), list(row["weights"]))
+        place = dc.topology.SurfacePlace((int(row["cell"]), int(row["simplex"])), list(row["weights"]))
         dc.step(self.surface, place, self.random.normal(0.0, 0.2, 3), self.answer(), trace=dc.topology.SurfaceTrace())
         self.places[i] = dc.topology.surface_places([place])[0]
 
@@ -85,7 +85,7 @@ class SurfaceCalls:
         if len(self.surface.map.cells()) > MAX_CELLS:
             self.make()
         try:
-            with dc.SurfaceEdit(self.surface) as edit:
+            with dc.topology.SurfaceEdit(self.surface) as edit:
                 cell, dart = int(self.random.choice(edit.map.cells())), int(self.random.integers(5))
                 change_edge = [dc.topology.split_edge, dc.topology.merge_edges, dc.topology.merge_faces][self.random.integers(3)]
                 change_edge(edit.topology, (cell, dart))
@@ -101,7 +101,7 @@ class SurfaceCalls:
             self.make()
 
     def locate(self) -> None:
-        locator = dc.SurfaceLocator(self.surface)
+        locator = dc.topology.SurfaceLocator(self.surface)
         places, distances = locator.nearest(self.surface, self.random.normal(0.0, 0.3, (5, 3)))
         assert self.surface.contains(places).all() and len(self.surface.point(places)) == len(distances)
         self.check()
@@ -110,7 +110,7 @@ class SurfaceCalls:
         n = len(self.places)
         bad: list[Callable[[], object]] = [
             lambda: dc.advance(self.surface, self.places, np.zeros((n + 1, 3))),
-            lambda: dc.step(self.surface, dc.SurfacePlace(), [0.0, 0.0, 0.1]),
+            lambda: dc.step(self.surface, dc.topology.SurfacePlace(), [0.0, 0.0, 0.1]),
             lambda: self.surface.move(self.rest[1:]), lambda: self.surface.corners((0xFFFFFF0, 0)),
             lambda: self.surface.point(self.places[:, None])]
         wrong(self, bad[self.random.integers(len(bad))])
@@ -130,7 +130,7 @@ class BodyCalls:
 
     def make(self) -> None:
         self.environment = dc.Environment(dc.generate_box(cells=[3, 3, 3], jitter=0.1), threads=2)
-        options = dc.BodiesOptions(dt=1e-2, gravity=[0.0, 0.0, -9.81], collisions=dc.records.BodyCollisionOptions())
+        options = dc.records.BodiesOptions(dt=1e-2, gravity=[0.0, 0.0, -9.81], collisions=dc.records.BodyCollisionOptions())
         self.bodies = dc.Bodies(self.environment, options, {"zmin": dc.Slide()})
         self.saved = self.bodies.checkpoint()
 
@@ -221,7 +221,7 @@ class CatheterCalls:
         points = self.catheter.points()
         assert len(self.catheter.frames()) in (len(points), len(points) - 1, 0)
         if len(points) > 2:
-            dc.camera_path(self.environment, points, dc.records.CameraOptions(spacing=0.2))
+            dc.records.camera_path(self.environment, points, dc.records.CameraOptions(spacing=0.2))
         self.check()
 
     def refuse(self) -> None:
@@ -250,7 +250,7 @@ class SimulationCalls:
                                        patch_responses={"xmax": dc.Escape(), "xmin": dc.Slide()}, user_data=["heat"])
         self.simulation = dc.Simulation(dc.Environment(dc.generate_box(cells=[3, 3, 3]), threads=2), options)
         statistics = dc.StatisticsOptions(hits=True, residence=True, pathlines_every=3)
-        statistics.planes = [dc.SectionPlane("middle", [0.5, 0.5, 0.5], [1.0, 0.0, 0.0])]
+        statistics.planes = [dc.records.SectionPlane("middle", [0.5, 0.5, 0.5], [1.0, 0.0, 0.0])]
         self.simulation.set_statistics(statistics)
         self.simulation.set_after_edit(lambda environment: environment.map.cells())
         self.simulation.add_inlet(self.simulation.environment.map.patch("xmin"), 20.0, [1.0, 0.0, 0.0], 0.01)
@@ -288,9 +288,9 @@ class SimulationCalls:
             self.make()
         plane = dc.topology.plane_through(self.random.uniform(0.3, 0.7, 3), self.random.normal(size=3))
         low = self.random.uniform(0.1, 0.5, 3)
-        what = [dc.Cut(plane, 0.02), dc.Carve(dc.topology.box_tool(low, low + 0.3), "open", bool(self.random.integers(2))),
-                dc.Ligature(plane, list(low), dc.topology.TyingOptions(0.1, 0.5), 0.05)][self.random.integers(3)]
-        event = dc.Event(self.simulation.time, what, POLICIES[self.random.integers(len(POLICIES))])
+        what = [dc.records.Cut(plane, 0.02), dc.records.Carve(dc.topology.box_tool(low, low + 0.3), "open", bool(self.random.integers(2))),
+                dc.records.Ligature(plane, list(low), dc.topology.TyingOptions(0.1, 0.5), 0.05)][self.random.integers(3)]
+        event = dc.records.Event(self.simulation.time, what, POLICIES[self.random.integers(len(POLICIES))])
         try:
             if self.random.integers(2):
                 dc.records.apply(self.simulation, event)

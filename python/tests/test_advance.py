@@ -62,7 +62,7 @@ def test_contacts_in_rounds_are_those_one_by_one():
             return mirrored(contacts["unused"], contacts["normal"])
 
         def single(contact, walls, earlier):
-            assert all(isinstance(w, dartcast.WallHit) for w in walls + earlier)
+            assert all(isinstance(w, dartcast.records.WallHit) for w in walls + earlier)
             d, n = contact.unused, walls[0].normal
             return mirrored(d[None], n[None])[0]
 
@@ -83,7 +83,7 @@ def test_a_round_has_one_contact_of_each_particle():
         rounds.append(contacts)
         return mirrored(contacts["unused"], contacts["normal"])
 
-    report = env.advance(parts, push(parts)[1], respond, options=dartcast.StepOptions(max_contacts=4))
+    report = env.advance(parts, push(parts)[1], respond, options=dartcast.records.StepOptions(max_contacts=4))
     # The contact after the last one allowed is reported, but not asked about.
     asked = sum(map(len, rounds))
     assert 1 < len(rounds) <= 4 and asked + report.counters.unfinished == len(report.contacts)
@@ -103,7 +103,7 @@ def test_none_and_zeros_let_particles_stay_at_the_wall():
 
 def test_a_motion_along_the_wall_is_not_turned_into_it():
     for answer in (lambda c, w: (c["unused"] * [1, 1, 0], np.ones(len(c), dtype=bool)),
-                   lambda c, w, e: dartcast.AfterContact([*c.unused[:2], 0.0], True)):
+                   lambda c, w, e: dartcast.records.AfterContact([*c.unused[:2], 0.0], True)):
         env, _ = scene()
         parts, _ = env.add(np.array([[0.2, 0.2, 0.9]]))
         single = answer.__code__.co_argcount == 3
@@ -265,7 +265,7 @@ def test_the_message_says_what_was_expected_what_came_and_what_to_do():
 def test_options_out_of_range_are_refused():
     env, parts = scene()
     for bad in (dict(max_contacts=0), dict(tolerance=0.0), dict(tolerance=np.nan), dict(max_slices=0)):
-        options = dartcast.StepOptions(**bad)
+        options = dartcast.records.StepOptions(**bad)
         for call in (lambda: env.advance(parts, parts.positions, options=options), options.check,
                      lambda: env.check_advance(parts, options, "mine")):
             with pytest.raises(dartcast.InvalidArgument):

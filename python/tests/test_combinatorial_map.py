@@ -7,7 +7,7 @@ import dartcast
 import numpy as np
 import pytest
 
-CellFace, Dart = dartcast.CellFace, dartcast.Dart
+CellFace, Dart = dartcast.topology.CellFace, dartcast.topology.Dart
 
 
 def box_map(**options):
@@ -36,7 +36,7 @@ def test_sizes():
     m = box_map()
     assert m.dimension == 3 and m.cell_count() == 8 and m.vertex_count == 27
     assert m.cell_count(1) == m.slot_count(1) == 8 and m.cell_count(0) == 0
-    assert m.type_of(1) is dartcast.CellType.HEXAHEDRON and m.bytes > 0
+    assert m.type_of(1) is dartcast.formats.CellType.HEXAHEDRON and m.bytes > 0
     assert m.pool_of("prism") == 2 and m.GENERAL_POOL == 4
     assert m.is_vertex(26) and not m.is_vertex(27) and not m.is_vertex(None)
     with pytest.raises(IndexError):
@@ -54,7 +54,7 @@ def test_cells_are_an_array_and_arrays_of_cells_are_answered_at_once():
     assert np.array_equal(m.type(cells), [m.type(int(c)) for c in cells])
     assert np.array_equal(np.sort(m.source(cells)), np.arange(len(cells)))
     assert m.is_free(cells).dtype == bool and m.is_free(cells).all() and not m.has_flat(cells).any()
-    assert m.is_free(int(cells[0])) is True and isinstance(m.type(int(cells[0])), dartcast.CellType)
+    assert m.is_free(int(cells[0])) is True and isinstance(m.type(int(cells[0])), dartcast.formats.CellType)
     with pytest.raises(dartcast.InvalidArgument, match="there is no cell"):
         m.source(np.append(cells, np.uint32(0xFFFFFFFF)))
     for wrong in (cells.astype(float), 1.5, "cell"):

@@ -7,7 +7,7 @@ import dartcast
 import numpy as np
 import pytest
 
-Dart = dartcast.Dart
+Dart = dartcast.topology.Dart
 
 
 def box(n=2):
@@ -147,7 +147,7 @@ def test_an_ended_edit_is_refused():
     c = box()
     with dartcast.topology.ComplexEdit(c) as edit:
         t, m = edit.topology, edit.map
-    plane = dartcast.Plane()
+    plane = dartcast.topology.Plane()
     for call in (lambda: edit.topology, lambda: edit.position(0), lambda: edit.commit(), lambda: m.cells(),
                  lambda: t.added(), lambda: dartcast.topology.remove(t, 0), lambda: edit.__enter__(), lambda: edit.savepoint(),
                  lambda: dartcast.topology.subdivide(edit, 0), lambda: dartcast.topology.split_by_plane(edit, [], plane)):

@@ -5,7 +5,7 @@ import dartcast
 import numpy as np
 import pytest
 
-Plane = dartcast.Plane
+Plane = dartcast.topology.Plane
 
 
 def volume(mesh):
@@ -50,7 +50,7 @@ def test_a_plane_splits_cells_in_two():
 @pytest.mark.parametrize("plane", [Plane([np.nan, 0, 1], 0), Plane([0, 0, 0], 0), Plane([0, 0, 1], np.inf)])
 def test_planes_that_are_not_finite_are_refused(plane):
     c = box(1)
-    tools = [dartcast.ConvexTool([plane])]
+    tools = [dartcast.topology.ConvexTool([plane])]
     with pytest.raises(dartcast.InvalidArgument, match="plane"):
         dartcast.cells_near(c, tools)
     with pytest.raises(dartcast.InvalidArgument, match="plane"):
@@ -71,12 +71,12 @@ def test_tools():
     assert len(dartcast.topology.capsule_tool([0, 0, 0], [1, 0, 0], 0.5).planes) == 26
     assert len(dartcast.thicken(Plane(), 0.1)) == 1
     assert len(dartcast.thicken(dartcast.Disc(radius=2.0, sides=8), 0.1)[0].planes) == 10
-    blade = dartcast.BladePath([[[0, 0, 0], [0, 0, 1]], [[1, 0, 0], [1, 0, 1]], [[2, 1, 0], [2, 1, 1]]])
+    blade = dartcast.topology.BladePath([[[0, 0, 0], [0, 0, 1]], [[1, 0, 0], [1, 0, 1]], [[2, 1, 0], [2, 1, 1]]])
     assert np.array_equal(blade.places[1][0], [1, 0, 0]) and len(dartcast.thicken(blade, 0.1)) >= 2
     for bad in (lambda: dartcast.topology.box_tool([0, 0, 0], [0, 1, 1]),
                 lambda: dartcast.topology.capsule_tool([0, 0, 0], [1, 0, 0], -1),
                 lambda: dartcast.thicken(Plane(), 0), lambda: dartcast.thicken(dartcast.Disc(sides=2), 0.1),
-                lambda: dartcast.thicken(dartcast.BladePath([]), 0.1)):
+                lambda: dartcast.thicken(dartcast.topology.BladePath([]), 0.1)):
         with pytest.raises(dartcast.InvalidArgument):
             bad()
     with pytest.raises(TypeError):

@@ -16,12 +16,12 @@ def frames(reader=None, **named):
 
 
 def test_a_turn_is_a_rotation():
-    d = dartcast.Deformation([dartcast.DeformationStep(kind=dartcast.DeformationKind.ROTATE, period=4.0)], REST)
+    d = dartcast.Deformation([dartcast.DeformationStep(kind=dartcast.records.DeformationKind.ROTATE, period=4.0)], REST)
     x = d.positions(1.0)
     assert len(d) == d.size == 20 and np.allclose(x, np.c_[-REST[:, 1], REST[:, 0], REST[:, 2]])
     out = np.empty_like(REST)
     assert d.positions(1.0, out) is out and np.array_equal(out, x) and not np.shares_memory(x, d.positions(1.0))
-    assert dartcast.records.deformation_kind("bend") == dartcast.DeformationKind.BEND and dartcast.records.deformation_kind("x") is None
+    assert dartcast.records.deformation_kind("bend") == dartcast.records.DeformationKind.BEND and dartcast.records.deformation_kind("x") is None
 
 
 def test_positions_go_into_an_environment():

@@ -13,7 +13,7 @@ def test_limits_hold():
     assert dartcast.predicates.is_radius(dartcast.predicates.LARGEST_RADIUS) and not dartcast.predicates.is_radius(-1.0) and not dartcast.predicates.is_radius(np.nan)
     assert dartcast.predicates.is_mass(dartcast.predicates.SMALLEST_MASS) and dartcast.predicates.is_mass(dartcast.predicates.LARGEST_MASS)
     assert not dartcast.predicates.is_mass(0.0) and dartcast.predicates.SPHERE_TIME_BOUND == 2**-30 and dartcast.predicates.TOUCHING_BOUND == 2**-46
-    assert dartcast.max_threads() >= 1 and dartcast.predicates.SHARE_TOGETHER == 2**-20 and dartcast.predicates.ALONG_SHARE == 4e-12
+    assert dartcast.records.max_threads() >= 1 and dartcast.records.SHARE_TOGETHER == 2**-20 and dartcast.records.ALONG_SHARE == 4e-12
 
 
 def test_counts_are_summed():
@@ -34,10 +34,10 @@ def test_a_body_turns_about_its_centre():
 
 
 @pytest.mark.parametrize("record", [
-    dartcast.topology.ParticleState([1, 2, 3], 5, 1), dartcast.WallHit((1, 2), 3, 4, [0, 0, 1]), dartcast.Contact(particle=3),
-    dartcast.StepOptions(max_contacts=3), dartcast.Reflect(0.5, friction=0.1), dartcast.Slide(),
-    dartcast.WallResponse("stick"), dartcast.records.Acceleration([0, 0, -9.81], 0.1), dartcast.AfterContact([1, 0, 0], True),
-    dartcast.Location(), dartcast.records.Counters(), dartcast.records.Audit(1, 0, ""), dartcast.records.Crossing(time=0.5),
+    dartcast.topology.ParticleState([1, 2, 3], 5, 1), dartcast.records.WallHit((1, 2), 3, 4, [0, 0, 1]), dartcast.records.Contact(particle=3),
+    dartcast.records.StepOptions(max_contacts=3), dartcast.Reflect(0.5, friction=0.1), dartcast.Slide(),
+    dartcast.records.WallResponse("stick"), dartcast.records.Acceleration([0, 0, -9.81], 0.1), dartcast.records.AfterContact([1, 0, 0], True),
+    dartcast.topology.Location(), dartcast.records.Counters(), dartcast.records.Audit(1, 0, ""), dartcast.records.Crossing(time=0.5),
     dartcast.formats.TrajectoryPoint(time=0.5), dartcast.records.StepResult(held=True), dartcast.predicates.RigidMover(),
 ])
 def test_records_are_copied_compared_and_saved(record):
@@ -49,24 +49,24 @@ def test_records_are_copied_compared_and_saved(record):
 
 
 @pytest.mark.parametrize("make", [
-    lambda z: dartcast.BladePath([[[0, 0, 0], [0, 0, z]], [[1, 0, 0], [1, 0, 1]]]),
+    lambda z: dartcast.topology.BladePath([[[0, 0, 0], [0, 0, z]], [[1, 0, 0], [1, 0, 1]]]),
     lambda z: dartcast.DeformationStep(frames=[np.zeros((2, 3)), np.full((2, 3), z)]),
-    lambda z: dartcast.MatchOptions(clusters=[[0, 1], [int(z)]]),
+    lambda z: dartcast.records.MatchOptions(clusters=[[0, 1], [int(z)]]),
 ])
 def test_records_with_lists_of_arrays_are_compared(make):
     assert make(1.0) == make(1.0) and copy.copy(make(1.0)) == make(1.0) and make(1.0) != make(2.0)
-    shorter = dartcast.BladePath([[[0, 0, 0], [0, 0, 1.0]]])
-    assert make(1.0) != shorter and shorter != dartcast.BladePath()
+    shorter = dartcast.topology.BladePath([[[0, 0, 0], [0, 0, 1.0]]])
+    assert make(1.0) != shorter and shorter != dartcast.topology.BladePath()
 
 
-@pytest.mark.parametrize("cls", [dartcast.records.BodiesStep, dartcast.SimulationStep, dartcast.records.SimulationEdit])
+@pytest.mark.parametrize("cls", [dartcast.records.BodiesStep, dartcast.records.SimulationStep, dartcast.records.SimulationEdit])
 def test_records_with_reports_are_copied(cls):
     assert type(copy.copy(cls())) is cls and type(copy.deepcopy(cls())) is cls
 
 
 def test_members_refuse_other_types():
-    for make in (lambda: dartcast.Reflect("much"), lambda: dartcast.StepOptions(max_contacts=-1),
-                 lambda: dartcast.WallResponse("bounce"), lambda: dartcast.records.Acceleration([1, 2]),
+    for make in (lambda: dartcast.Reflect("much"), lambda: dartcast.records.StepOptions(max_contacts=-1),
+                 lambda: dartcast.records.WallResponse("bounce"), lambda: dartcast.records.Acceleration([1, 2]),
                  lambda: dartcast.topology.ParticleState(cell="x"), lambda: dartcast.Reflect(1, 2, 3),
                  lambda: dartcast.Reflect(0.5, restitution=0.5)):
         with pytest.raises((TypeError, ValueError)):

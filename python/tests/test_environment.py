@@ -308,9 +308,9 @@ def test_edits_change_the_cells_and_particles_follow():
     result = env.update_after_edit(moved)
     assert len(result.orphaned) == 1 and result.orphaned["place"][0] == dartcast.Place.BLOCKED
     assert np.isclose(result.orphaned["distance"][0], 0.25) and not moved.held.any()
-    assert env.update_after_edit(held, "hold").orphaned["outcome"][0] == dartcast.OrphanPolicy.HOLD
+    assert env.update_after_edit(held, "hold").orphaned["outcome"][0] == dartcast.records.OrphanPolicy.HOLD
     assert held.held.tolist() == [True, False, False] and np.isclose(held.held_weights(0).sum(), 1.0)
-    env.update_after_edit(gone, dartcast.OrphanPolicy.ABSORB)
+    env.update_after_edit(gone, dartcast.records.OrphanPolicy.ABSORB)
     assert len(gone) == 2
 
 
@@ -344,7 +344,7 @@ def test_threads_are_set():
     env.threads = 2
     assert env.threads == 2
     with pytest.raises(dartcast.Error):
-        env.threads = dartcast.max_threads() + 1
+        env.threads = dartcast.records.max_threads() + 1
     with pytest.raises(ValueError):
         env.threads = -1
     dartcast.records.check_threads(1)

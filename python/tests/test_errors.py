@@ -9,7 +9,7 @@ import pytest
 def test_bases() -> None:
     assert dartcast.Error.__bases__ == (Exception,)
     assert dartcast.InvalidArgument.__bases__ == (dartcast.Error, ValueError)
-    for kind in (dartcast.InvalidMesh, dartcast.EditRefused, dartcast.InternalError, dartcast.InUse):
+    for kind in (dartcast.InvalidMesh, dartcast.EditRefused, dartcast.records.InternalError, dartcast.InUse):
         assert kind.__bases__ == (dartcast.Error,), kind
 
 

@@ -15,7 +15,7 @@ def area(mesh):
 
 
 def test_options_by_name_or_as_a_record():
-    options = dartcast.BoxOptions(cells=[2, 3, 4], size=(2.0, 3.0, 4.0))
+    options = dartcast.formats.BoxOptions(cells=[2, 3, 4], size=(2.0, 3.0, 4.0))
     a, b = dartcast.generate_box(options), dartcast.generate_box(cells=(2, 3, 4), size=np.array([2.0, 3.0, 4.0]))
     assert np.array_equal(a.points, b.points) and np.array_equal(a.connectivity, b.connectivity)
     assert a.cell_count == 24 and np.array_equal(a.points.max(axis=0), [2, 3, 4])

@@ -44,9 +44,9 @@ CASES = {
     # Lists by patch without names, and an empty one.
     "summaries of any content": """
         import dartcast as d
-        d.formats.summary_json(d.Summary()); d.formats.summary_text(d.Summary()); d.formats.histogram_text(d.Summary())
-        wrong = d.Summary(totals=d.records.SimulationTotals(contacts_by_patch=[0, 1, 2]))
-        planes = d.Summary(statistics=d.formats.StatisticsSummary(planes=[d.records.PlaneTotals()]))
+        d.formats.summary_json(d.formats.Summary()); d.formats.summary_text(d.formats.Summary()); d.formats.histogram_text(d.formats.Summary())
+        wrong = d.formats.Summary(totals=d.records.SimulationTotals(contacts_by_patch=[0, 1, 2]))
+        planes = d.formats.Summary(statistics=d.formats.StatisticsSummary(planes=[d.records.PlaneTotals()]))
         for call in (d.formats.summary_json, d.formats.summary_text):
             for summary in (wrong, planes):
                 try: call(summary)
@@ -86,7 +86,7 @@ CASES = {
                 except TypeError: continue
                 assert name in without_members, f"{name}: not refused"
         new = lambda cls: cls.__new__(cls)
-        for use in (lambda: d.WallResponses(new(d.Slide)), lambda: d.Environment(new(d.MeshData)),
+        for use in (lambda: d.records.WallResponses(new(d.Slide)), lambda: d.Environment(new(d.MeshData)),
                     lambda: d.audit(new(d.topology.CellComplex), new(d.Particles))):
             try: use()
             except TypeError: continue

@@ -92,17 +92,17 @@ def test_a_deformation() -> None:
 
 
 def test_a_surface() -> None:
-    surface = dartcast.Surface(dartcast.generate_barrel(staves=8, rows=4, rings=2))
+    surface = dartcast.topology.Surface(dartcast.generate_barrel(staves=8, rows=4, rings=2))
     cells = surface.map.cells()
     for c in cells[::2]:
         surface.set_free(int(c), False)
-    place = dartcast.SurfacePlace(surface.triangles()[-1], [0.3, 0.3, 0.4])
+    place = dartcast.topology.SurfacePlace(surface.triangles()[-1], [0.3, 0.3, 0.4])
     rest = surface.positions.copy()
 
     def run(inside: Callable[[], None]) -> None:
         called = once(inside)
         for way in np.random.default_rng(1).normal(0.0, 1.0, (20, 3)):
-            dartcast.step(surface, dartcast.SurfacePlace(place.triangle, place.weights), way, called)
+            dartcast.step(surface, dartcast.topology.SurfacePlace(place.triangle, place.weights), way, called)
 
     refused_while(run, lambda: surface.move(rest))
     surface.move(rest)
@@ -112,7 +112,7 @@ def test_bodies_and_a_catheter() -> None:
     """They compute on their environment: while it is in use they are, too."""
     environment = dartcast.Environment(dartcast.generate_box(cells=[3, 3, 10], size=[0.01, 0.01, 0.05],
                                                              origin=[-0.005, -0.005, 0.0]))
-    bodies = dartcast.Bodies(environment, dartcast.BodiesOptions(dt=1e-2))
+    bodies = dartcast.Bodies(environment, dartcast.records.BodiesOptions(dt=1e-2))
     bodies.add(np.array([[0.0, 0.0, 0.03], [0.001, 0.0, 0.03]]), dartcast.BodyOptions())
     catheter = dartcast.Catheter(environment, dartcast.CatheterOptions(
         length=0.02, spacing=2e-3, entry=[0.0, 0.0, 1e-3], direction=[0.0, 0.0, 1.0]))

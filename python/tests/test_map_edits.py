@@ -8,7 +8,7 @@ import dartcast
 import numpy as np
 import pytest
 
-Dart, CellFace = dartcast.Dart, dartcast.CellFace
+Dart, CellFace = dartcast.topology.Dart, dartcast.topology.CellFace
 
 
 def box_map(**options):
@@ -75,7 +75,7 @@ def test_a_cell_is_split_along_a_loop_and_merged_again():
             dartcast.topology.split_face(t, darts[0], darts[1])
         path = loop(t.map, [0, 3, 7, 4])
         one, two = dartcast.topology.split_cell(t, path)
-        assert t.map.type(np.array([one, two])).tolist() == [dartcast.CellType.PRISM] * 2
+        assert t.map.type(np.array([one, two])).tolist() == [dartcast.formats.CellType.PRISM] * 2
         shared = next(f for f in range(5) if t.map.opposite((int(one), f)) is not None)
         whole = dartcast.topology.merge_cells(t, (int(one), shared))
         assert t.map.shape(whole).face_count == 8
@@ -226,7 +226,7 @@ def test_drafts_replace_cells():
         cells = t.replace([c], [draft])
         assert t.map.view(int(cells[0])).vertices[-1] == v
         t.commit()
-    assert m.type(int(cells[0])) is dartcast.CellType.POLYHEDRON and dartcast.topology.check_integrity(m) == []
+    assert m.type(int(cells[0])) is dartcast.formats.CellType.POLYHEDRON and dartcast.topology.check_integrity(m) == []
 
 
 def drafts_that_are_refused(m):
@@ -333,7 +333,7 @@ def test_polygons_are_split_and_merged():
     with dartcast.topology.Transaction(m) as t:
         c = int(t.map.cells()[0])
         one, two = dartcast.topology.split_face(t, (c, 0), (c, 2))
-        assert t.map.type(np.array([one, two])).tolist() == [dartcast.CellType.TRIANGLE] * 2
+        assert t.map.type(np.array([one, two])).tolist() == [dartcast.formats.CellType.TRIANGLE] * 2
         with pytest.raises(dartcast.InvalidArgument, match="call split_face"):
             dartcast.topology.split_cell(t, [(int(one), 0)] * 3)
         t.commit()

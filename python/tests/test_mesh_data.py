@@ -22,7 +22,7 @@ def test_cells_and_points_are_those_given():
     assert mesh.cell_count == 2 and mesh.dimension == 3
     assert np.array_equal(mesh.connectivity, TETRA.ravel()) and mesh.connectivity.dtype == np.uint32
     assert np.array_equal(mesh.offsets, [0, 4, 8])
-    assert np.array_equal(mesh.types, [dartcast.CellType.TETRAHEDRON] * 2)
+    assert np.array_equal(mesh.types, [dartcast.formats.CellType.TETRAHEDRON] * 2)
     assert np.array_equal(mesh.cell(1), TETRA[1])
     assert np.array_equal(mesh.cells["tetra"], TETRA)
 
@@ -45,7 +45,7 @@ def test_all_types_keep_their_order():
     points = np.vstack([cube, [[0.5, 0.5, 2.0]]])
     cells = [("hexahedron", [[0, 1, 3, 2, 4, 5, 7, 6]]), ("pyramid", [[4, 5, 7, 6, 8]])]
     mesh = dartcast.MeshData(points, cells)
-    assert list(mesh.types) == [dartcast.CellType.HEXAHEDRON, dartcast.CellType.PYRAMID]
+    assert list(mesh.types) == [dartcast.formats.CellType.HEXAHEDRON, dartcast.formats.CellType.PYRAMID]
     report = dartcast.check_and_repair(mesh)
     assert report.valid and not report.repairs
     assert report.cells == {"hexahedron": 1, "pyramid": 1}
@@ -65,7 +65,7 @@ def test_a_polyhedron_is_given_by_its_faces():
     mesh = dartcast.MeshData(POINTS[:4], {"polyhedron": [faces]})
     assert [list(f) for f in mesh.cells["polyhedron"][0]] == faces
     assert dartcast.check_and_repair(mesh).valid
-    assert list(dartcast.MeshData(POINTS[:4], {"polyhedron4": [faces]}).types) == [dartcast.CellType.POLYHEDRON]
+    assert list(dartcast.MeshData(POINTS[:4], {"polyhedron4": [faces]}).types) == [dartcast.formats.CellType.POLYHEDRON]
 
 
 def test_planar_cells_and_their_patches():
@@ -222,7 +222,7 @@ def test_arrays_that_contradict_each_other_are_refused_by_calls_that_read_them(b
 
 def test_cells_and_faces_can_be_added():
     mesh = two_tetrahedra()
-    mesh.add_cell(dartcast.CellType.TETRAHEDRON, [0, 1, 2, 4])
+    mesh.add_cell(dartcast.formats.CellType.TETRAHEDRON, [0, 1, 2, 4])
     mesh.add_patch_face(np.array([0, 1, 2]), 3)
     assert mesh.cell_count == 3 and list(mesh.cell(2)) == [0, 1, 2, 4]
     assert list(mesh.patch_face(0)) == [0, 1, 2] and list(mesh.patch_tags) == [3]
@@ -247,8 +247,8 @@ def test_copies_are_independent_and_pickles_are_equal():
 
 
 def test_type_names_and_dimensions():
-    assert dartcast.formats.CELL_TYPE_NAMES[dartcast.CellType.PRISM] == "prism"
-    assert [dartcast.formats.dimension(t) for t in dartcast.CellType] == [3] * 5 + [2] * 3
+    assert dartcast.formats.CELL_TYPE_NAMES[dartcast.formats.CellType.PRISM] == "prism"
+    assert [dartcast.formats.dimension(t) for t in dartcast.formats.CellType] == [3] * 5 + [2] * 3
     with pytest.raises(ValueError, match="is no CellType"):
         dartcast.formats.dimension(8)
 

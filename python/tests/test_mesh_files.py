@@ -74,7 +74,7 @@ def test_paths_may_be_texts_or_paths(tmp_path):
     dartcast.write_mesh(mixed_box(), str(path))
     for given in (path, str(path), pathlib.PurePath(path)):
         assert dartcast.formats.read_valid_mesh(given).report.valid
-        assert dartcast.check_mesh(given, threads=1).report.valid
+        assert dartcast.formats.check_mesh(given, threads=1).report.valid
     with pytest.raises(TypeError):
         dartcast.read_mesh(3)
 
@@ -88,7 +88,7 @@ def test_a_file_that_is_no_mesh_is_a_defect_or_an_error(tmp_path):
     with pytest.raises(dartcast.InvalidMesh, match="broken.msh"):
         dartcast.formats.read_valid_mesh(path)
     with pytest.raises(dartcast.InvalidMesh):
-        dartcast.read_surface(tmp_path / "missing.stl")
+        dartcast.formats.read_surface(tmp_path / "missing.stl")
 
 
 def test_a_mesh_that_contradicts_itself_is_not_written(tmp_path):
@@ -104,7 +104,7 @@ def test_a_mesh_that_contradicts_itself_is_not_written(tmp_path):
 def test_a_memory_limit_is_kept(tmp_path):
     path = tmp_path / "box.vtu"
     dartcast.write_mesh(mixed_box(), path)
-    file = dartcast.read_mesh(path, dartcast.ReadOptions(max_memory=1000))
+    file = dartcast.read_mesh(path, dartcast.formats.ReadOptions(max_memory=1000))
     assert not file.report.valid
 
 
@@ -113,7 +113,7 @@ def test_surfaces(tmp_path):
     path.write_text("OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n")
     assert dartcast.formats.is_surface_file(path) and not dartcast.formats.is_surface_file("a.vtu")
     assert ".off" in dartcast.formats.surface_endings()
-    mesh, report = dartcast.read_surface(path)
+    mesh, report = dartcast.formats.read_surface(path)
     assert report.valid and report.surface and mesh.cell_count == 4
     assert dartcast.formats.check_surface(path).report.cells == {"triangle": 4}
 

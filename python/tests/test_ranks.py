@@ -122,7 +122,7 @@ def twisted(points, step):
     return points + 0.05 * numpy.sin(0.4 * step) * numpy.sin(points[:, [1, 2, 0]])
 
 
-BOX = dartcast.BoxOptions(cells=[6, 5, 5], size=[6.0, 5.0, 5.0], jitter=0.2)
+BOX = dartcast.formats.BoxOptions(cells=[6, 5, 5], size=[6.0, 5.0, 5.0], jitter=0.2)
 
 
 def starts():
@@ -212,7 +212,7 @@ def test_a_rank_that_cancels_ends_the_run_on_all(tmp_path):
     turns = iter(range(100))
     results = run_on_threads(2, out=tmp_path, progress=progress)
     assert sorted(type(r).__name__ for r in results) == ["Summary", "ValueError"]
-    assert all(r.cancelled and r.steps == 10 for r in results if isinstance(r, dartcast.Summary))
+    assert all(r.cancelled and r.steps == 10 for r in results if isinstance(r, dartcast.formats.Summary))
 
 
 def test_a_rank_that_fails_ends_the_others(tmp_path):

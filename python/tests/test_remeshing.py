@@ -66,7 +66,7 @@ def test_a_stale_subdivision_is_refused():
 
 
 def test_a_cell_becomes_its_simplices():
-    c = dartcast.topology.CellComplex(dartcast.generate_box(dartcast.BoxOptions(cells=[2, 2, 2], size=[2, 2, 2])))
+    c = dartcast.topology.CellComplex(dartcast.generate_box(dartcast.formats.BoxOptions(cells=[2, 2, 2], size=[2, 2, 2])))
     before = c.simplex_count
     with dartcast.topology.ComplexEdit(c) as edit:
         parts = dartcast.topology.divide_into_simplices(edit, [first(edit.map)])

@@ -31,12 +31,12 @@ def step(respond, **named):
     (Stick(), [0.35, 0.3, 1.0], [0, 0, 0], ParticleStatus.STUCK),
     (Absorb(), [0.35, 0.3, 1.0], [0.2, 0, 0.4], ParticleStatus.ABSORBED),
     (Escape(), [0.35, 0.3, 1.0], [0.2, 0, 0.4], ParticleStatus.ESCAPED),
-    (dartcast.WallResponse("slide"), [0.4, 0.3, 1.0], [0.2, 0, 0], ParticleStatus.ALIVE),
+    (dartcast.records.WallResponse("slide"), [0.4, 0.3, 1.0], [0.2, 0, 0], ParticleStatus.ALIVE),
     ({"zmax": Slide()}, [0.4, 0.3, 1.0], [0.2, 0, 0], ParticleStatus.ALIVE),
     ({"zmin": Slide()}, [0.4, 0.3, 0.9], [0.2, 0, -0.4], ParticleStatus.ALIVE),
     ({None: Stick(), "xmin": Slide()}, [0.35, 0.3, 1.0], [0, 0, 0], ParticleStatus.STUCK),
     ({6: Slide(), None: Stick()}, [0.4, 0.3, 1.0], [0.2, 0, 0], ParticleStatus.ALIVE),
-    (dartcast.WallResponses(Slide()), [0.4, 0.3, 1.0], [0.2, 0, 0], ParticleStatus.ALIVE),
+    (dartcast.records.WallResponses(Slide()), [0.4, 0.3, 1.0], [0.2, 0, 0], ParticleStatus.ALIVE),
 ])
 def test_a_response_writes_velocity_and_status(respond, x, v, status):
     found_x, found_v, found_status, report = step(respond)
@@ -115,14 +115,14 @@ def test_read_only_arrays_are_not_written():
 
 def test_responses_by_patch_are_read_back():
     env, _, _ = scene()
-    r = dartcast.WallResponses({None: Slide(), "zmax": Reflect(0.25)}, env.map)
+    r = dartcast.records.WallResponses({None: Slide(), "zmax": Reflect(0.25)}, env.map)
     top = env.map.patch_names.index("zmax")
-    assert r.of(top) == dartcast.WallResponse(dartcast.records.WallResponseKind.REFLECT, 0.25, 0.0)
+    assert r.of(top) == dartcast.records.WallResponse(dartcast.records.WallResponseKind.REFLECT, 0.25, 0.0)
     assert r.of(1).kind == dartcast.records.WallResponseKind.SLIDE
     r.set(1, Stick())
     assert r.of(1).kind == dartcast.records.WallResponseKind.STICK and r.of(60000).kind == dartcast.records.WallResponseKind.SLIDE
     with pytest.raises(dartcast.InvalidArgument, match="number"):
-        dartcast.WallResponses({"zmax": Slide()})
+        dartcast.records.WallResponses({"zmax": Slide()})
     with pytest.raises(TypeError):
         r.set(1, 5)
     with pytest.raises(dartcast.InvalidArgument):
@@ -137,14 +137,14 @@ def test_the_operators_reflect_and_slide():
     assert np.allclose(dartcast.slid([1, 0, 2], walls, []), [1, 0, 0])
     assert np.array_equal(dartcast.slid([1, 0, 2], [], []), [1, 0, 2])
     assert np.array_equal(dartcast.reflected([1, 0, 2], [], 0.5, 0.0), [1, 0, 2])
-    broken = dartcast.WallHit(normal=[np.nan] * 3)
+    broken = dartcast.records.WallHit(normal=[np.nan] * 3)
     dartcast.reflected([1, 0, 2], [broken] * 9, 0.5, 0.1)
     dartcast.slid([1, 0, 2], [broken] * 9, [broken] * 3)
 
 
 def test_stopped_particles_are_held():
     env, parts, v = scene()
-    options = dartcast.StepOptions(max_contacts=1)
+    options = dartcast.records.StepOptions(max_contacts=1)
     targets = parts.positions + [[0.0, 0.0, 5.0]]
     v[:] = [[0.0, 0.0, 10.0]]
     report = env.advance(parts, targets, options=options)

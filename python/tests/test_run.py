@@ -48,14 +48,14 @@ def test_a_dict_is_the_scene_of_its_text(tmp_path: pathlib.Path) -> None:
 
 def test_texts_and_numbers_of_dicts_survive() -> None:
     text = dartcast.scene_text({"a": 'say "so" \\ é\n', "b": [True, 1, 0.1, 1e300], "c": {"d": None, "e \U0001f600": "x"},
-                                "\x7f": dartcast.CellType.TETRAHEDRON})
+                                "\x7f": dartcast.formats.CellType.TETRAHEDRON})
     assert text == ('"a" = "say \\"so\\" \\\\ é\\n"\n"b" = [true, 1, 0.1, 1e+300]\n"c" = {"e \U0001f600" = "x"}\n'
                     '"\\u007f" = "tetrahedron"\n')
     with pytest.raises(TypeError, match=r"a\[1\].b: .*object"):
         dartcast.scene_text({"a": [1, {"b": object()}]})
     scene = dartcast.formats.parse_scene(dartcast.scene_text(BAR | {"environment": {"generator": "box",
-                                                                           "type": dartcast.CellType.TETRAHEDRON}}), "x")
-    assert scene.environment.mesh.type == dartcast.CellType.TETRAHEDRON
+                                                                           "type": dartcast.formats.CellType.TETRAHEDRON}}), "x")
+    assert scene.environment.mesh.type == dartcast.formats.CellType.TETRAHEDRON
 
 
 def test_errors_name_the_key() -> None:

@@ -56,7 +56,7 @@ def test_the_environment_is_the_simulations_alone() -> None:
 def test_statistics_count_all_contacts() -> None:
     simulation = bar()
     options = dartcast.StatisticsOptions(hits=True, pathlines_every=10)
-    options.planes = [dartcast.SectionPlane("middle", [0.0, 0.0, 14.0], [0.0, 0.0, 1.0])]
+    options.planes = [dartcast.records.SectionPlane("middle", [0.0, 0.0, 14.0], [0.0, 0.0, 1.0])]
     simulation.set_statistics(options)
     simulation.add_random(200, [5.0, 3.0, 10.0])
     contacts = crossed = 0
@@ -74,7 +74,7 @@ def test_statistics_count_all_contacts() -> None:
 def test_crossings_are_those_of_the_signs() -> None:
     random = np.random.default_rng(1)
     before, after = random.uniform(-1, 1, (2, 1000, 3))
-    found = dartcast.records.find_crossings([dartcast.SectionPlane("p", [0, 0, 0], [0, 0, 2])], before, after)
+    found = dartcast.records.find_crossings([dartcast.records.SectionPlane("p", [0, 0, 0], [0, 0, 2])], before, after)
     crossed = (before[:, 2] < 0) != (after[:, 2] < 0)
     assert np.array_equal(found["particle"], np.flatnonzero(crossed))
     assert np.array_equal(found["forward"], after[crossed, 2] >= 0)
@@ -94,8 +94,8 @@ def test_events_cut_while_particles_flow() -> None:
     simulation = dartcast.Simulation(dartcast.Environment(dartcast.generate_vessel()),
                                      dartcast.SimulationOptions(dt=1e-3))
     simulation.add_random(200, [0.0, 0.0, 0.1])
-    cut = dartcast.Cut(dartcast.Disc(centre=[0.0, 0.0, -0.012], radius=6e-3), 1.2e-3)
-    report = dartcast.records.apply(simulation, dartcast.Event(0.0, cut))
+    cut = dartcast.records.Cut(dartcast.Disc(centre=[0.0, 0.0, -0.012], radius=6e-3), 1.2e-3)
+    report = dartcast.records.apply(simulation, dartcast.records.Event(0.0, cut))
     assert report.cells_added > report.cells_removed > 0 and report.cells_opened > 0
     simulation.step()
     assert simulation.audit().failed == 0
@@ -119,7 +119,7 @@ def test_setters_refuse_what_is_out_of_range() -> None:
         lambda: simulation.add_random(2**40, [0.0, 0.0, 0.0]),
         lambda: simulation.add_inlet(60000, 1.0, [0.0, 0.0, 1.0]),
         lambda: simulation.add_body(np.full((1, 3), 2.5), dartcast.BodyOptions(mass=-1.0)),
-        lambda: simulation.set_events([dartcast.Event(-1.0, dartcast.Cut(plane, 0.1))]),
+        lambda: simulation.set_events([dartcast.records.Event(-1.0, dartcast.records.Cut(plane, 0.1))]),
         lambda: simulation.set_adaptive_subdivision(dartcast.formats.AdaptiveSubdivisionScene(
             1, dartcast.records.AdaptiveSubdivisionOptions(max_particles=1, min_particles=2))),
         lambda: simulation.set_deformation(dartcast.Deformation([], np.zeros((n + 1, 3)))),
@@ -204,7 +204,7 @@ def test_a_checkpoint_of_another_scene_is_refused() -> None:
     assert other.state_hash().hex() == before and other.audit().failed == 0
 
 
-def vessel(events: list[dartcast.Event]) -> dartcast.Simulation:
+def vessel(events: list[dartcast.records.Event]) -> dartcast.Simulation:
     simulation = dartcast.Simulation(dartcast.Environment(dartcast.generate_vessel()),
                                      dartcast.SimulationOptions(dt=1e-3))
     simulation.add_random(200, [0.0, 0.0, 0.1])
@@ -213,15 +213,15 @@ def vessel(events: list[dartcast.Event]) -> dartcast.Simulation:
 
 
 @pytest.mark.parametrize("kind, what", [
-    ("CUT", lambda: dartcast.Cut(dartcast.Disc(centre=[0.0, 0.0, -0.012], radius=6e-3), 1.2e-3)),
-    ("CARVE", lambda: dartcast.Carve(dartcast.topology.box_tool([-4e-3, -4e-3, -4e-3], [4e-3, 4e-3, 4e-3]), "open")),
-    ("LIGATURE", lambda: dartcast.Ligature(dartcast.topology.plane_through([0.0, 0.0, 0.0], [0.0, 0.0, 1.0]), [0.0, 0.0, 0.0],
+    ("CUT", lambda: dartcast.records.Cut(dartcast.Disc(centre=[0.0, 0.0, -0.012], radius=6e-3), 1.2e-3)),
+    ("CARVE", lambda: dartcast.records.Carve(dartcast.topology.box_tool([-4e-3, -4e-3, -4e-3], [4e-3, 4e-3, 4e-3]), "open")),
+    ("LIGATURE", lambda: dartcast.records.Ligature(dartcast.topology.plane_through([0.0, 0.0, 0.0], [0.0, 0.0, 1.0]), [0.0, 0.0, 0.0],
                                            dartcast.topology.TyingOptions(0.2, 5e-3), 2e-3)),
-    ("OPEN", lambda: dartcast.OpenCells(np.flatnonzero(dartcast.generate_vessel().free == 0)[:100])),
-    ("CLOSE", lambda: dartcast.CloseCells(np.flatnonzero(dartcast.generate_vessel().free)[:100]))])
+    ("OPEN", lambda: dartcast.records.OpenCells(np.flatnonzero(dartcast.generate_vessel().free == 0)[:100])),
+    ("CLOSE", lambda: dartcast.records.CloseCells(np.flatnonzero(dartcast.generate_vessel().free)[:100]))])
 def test_events_happen_at_their_time(kind: str, what: object) -> None:
     assert callable(what)
-    simulation = vessel([dartcast.Event(2e-3, what())])
+    simulation = vessel([dartcast.records.Event(2e-3, what())])
     reports = []
     for _ in range(4):
         simulation.step()
@@ -234,9 +234,9 @@ def test_events_happen_at_their_time(kind: str, what: object) -> None:
 
 
 def test_events_that_cannot_happen_name_themselves() -> None:
-    far = dartcast.Ligature(dartcast.topology.plane_through([0.0, 0.0, 9.0], [0.0, 0.0, 1.0]), [0.0, 0.0, 9.0],
+    far = dartcast.records.Ligature(dartcast.topology.plane_through([0.0, 0.0, 9.0], [0.0, 0.0, 1.0]), [0.0, 0.0, 9.0],
                             dartcast.topology.TyingOptions(0.2, 5e-3), 2e-3)
-    simulation = vessel([dartcast.Event(0.0, far)])
+    simulation = vessel([dartcast.records.Event(0.0, far)])
     with pytest.raises(dartcast.Error, match="event"):
         simulation.step()
     assert simulation.steps == 0 and simulation.audit().failed == 0

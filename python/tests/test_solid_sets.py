@@ -34,7 +34,7 @@ def test_an_edge_does_not_cut_a_corner() -> None:
 
 def test_a_place_that_is_not_free_is_refused() -> None:
     solids = dc.SolidSet(with_obstacle())
-    placed = solids.add(dc.SolidMesh(np.array([[0.5, 2.5, 2.5], [1.5, 2.5, 2.5], [3.5, 2.5, 2.5]]),
+    placed = solids.add(dc.records.SolidMesh(np.array([[0.5, 2.5, 2.5], [1.5, 2.5, 2.5], [3.5, 2.5, 2.5]]),
                                      edges=np.array([[0, 1], [1, 2]])))
     assert placed.refusal == dc.records.SolidRefusal.MEETS_WALL and placed.solid is None and list(placed.vertices) == [1, 2]
     assert len(solids) == solids.size == 0 and solids.stuck == []

@@ -8,7 +8,7 @@ import pytest
 
 def test_a_body_falls_freely() -> None:
     environment = dartcast.Environment(dartcast.generate_box(cells=[4, 4, 4], size=[4.0, 4.0, 4.0]))
-    bodies = dartcast.Bodies(environment, dartcast.BodiesOptions(dt=1e-2, gravity=[0.0, 0.0, -10.0]))
+    bodies = dartcast.Bodies(environment, dartcast.records.BodiesOptions(dt=1e-2, gravity=[0.0, 0.0, -10.0]))
     points = np.array([[2.0, 2.0, 3.0], [2.2, 2.0, 3.0], [2.0, 2.2, 3.0], [2.0, 2.0, 3.2]])
     assert bodies.add(points, dartcast.BodyOptions(mass=2.0)).body == 0
     for _ in range(20):
@@ -19,7 +19,7 @@ def test_a_body_falls_freely() -> None:
 
 def test_samples_of_a_solid_are_inside() -> None:
     barrel = dartcast.generate_barrel()
-    samples = dartcast.sample_solid(barrel, dartcast.SamplingOptions(spacing=0.1))
+    samples = dartcast.sample_solid(barrel, dartcast.records.SamplingOptions(spacing=0.1))
     radius = np.hypot(samples.points[:, 0], samples.points[:, 1])
     assert radius.max() < 0.25 + 1e-9 and samples.on_surface > 10
 
@@ -36,15 +36,15 @@ def test_a_catheter_stays_in_the_lumen() -> None:
 
 
 def test_places_on_a_surface_keep_their_length() -> None:
-    surface = dartcast.Surface(dartcast.generate_barrel())
-    locator = dartcast.SurfaceLocator(surface)
+    surface = dartcast.topology.Surface(dartcast.generate_barrel())
+    locator = dartcast.topology.SurfaceLocator(surface)
     found = locator.nearest(surface, [0.3, 0.01, 0.02])
     assert found.distance == pytest.approx(0.05, abs=0.01)
     assert surface.contains(found.place)
 
 
 def test_stale_handles_raise() -> None:
-    surface = dartcast.Surface(dartcast.generate_barrel())
+    surface = dartcast.topology.Surface(dartcast.generate_barrel())
     with pytest.raises((dartcast.InvalidArgument, IndexError)):
         surface.corners((0xFFFFFF0, 0))
 
@@ -55,7 +55,7 @@ CROSS = np.array([[1.0, 0, 0], [-1.0, 0, 0], [0, 1.0, 0], [0, -1.0, 0], [0, 0, 1
 def bodies(**options: object) -> dartcast.Bodies:
     """No body yet, in a large box around the origin."""
     environment = dartcast.Environment(dartcast.generate_box(cells=[2, 2, 2], size=[40.0] * 3, origin=[-20.0] * 3))
-    return dartcast.Bodies(environment, dartcast.BodiesOptions(**({"dt": 1e-2} | options)))
+    return dartcast.Bodies(environment, dartcast.records.BodiesOptions(**({"dt": 1e-2} | options)))
 
 
 def test_a_body_has_the_numbers_of_its_points() -> None:
@@ -216,7 +216,7 @@ def test_catheters_refuse_what_is_out_of_range() -> None:
 
 def test_cameras_are_evenly_spaced_along_a_line() -> None:
     points = np.array([[0.0, 0.0, 0.01 * k] for k in range(1, 5)])
-    path = dartcast.camera_path(tube(), points, dartcast.records.CameraOptions(spacing=2e-3, up=[0.0, 1.0, 0.0]))
+    path = dartcast.records.camera_path(tube(), points, dartcast.records.CameraOptions(spacing=2e-3, up=[0.0, 1.0, 0.0]))
     assert path.at_walls == 0 and len(path.cameras) == 16
     for k, camera in enumerate(path.cameras):
         assert np.allclose(camera.position, [0.0, 0.0, 0.01 + 2e-3 * k], atol=1e-9)
@@ -224,9 +224,9 @@ def test_cameras_are_evenly_spaced_along_a_line() -> None:
         assert camera.arc == pytest.approx(2e-3 * k, abs=1e-9)
     for wrong in (points[:1], points + [1.0, 0.0, 0.0]):
         with pytest.raises(dartcast.InvalidArgument):
-            dartcast.camera_path(tube(), wrong)
+            dartcast.records.camera_path(tube(), wrong)
     with pytest.raises(dartcast.InvalidArgument, match="max_count|cameras"):
-        dartcast.camera_path(tube(), points, dartcast.records.CameraOptions(spacing=1e-4, max_count=10))
+        dartcast.records.camera_path(tube(), points, dartcast.records.CameraOptions(spacing=1e-4, max_count=10))
 
 
 def test_segments_of_a_catheter_stay_out_of_walls() -> None:
@@ -246,10 +246,10 @@ def test_segments_of_a_catheter_stay_out_of_walls() -> None:
 def test_the_surface_of_a_body_stays_out_of_walls() -> None:
     mesh = dartcast.generate_box(cells=[4, 4, 4], size=[4.0, 4.0, 4.0])
     environment = dartcast.Environment(mesh)
-    bodies = dartcast.Bodies(environment, dartcast.BodiesOptions(dt=0.01, gravity=[0.0, 0.0, -9.81]))
-    barrel = dartcast.generate_barrel(dartcast.BarrelOptions(radius=0.5, height=1.0))
+    bodies = dartcast.Bodies(environment, dartcast.records.BodiesOptions(dt=0.01, gravity=[0.0, 0.0, -9.81]))
+    barrel = dartcast.generate_barrel(dartcast.formats.BarrelOptions(radius=0.5, height=1.0))
     barrel.points = barrel.points + [2.0, 2.0, 1.0]
-    particles = dartcast.sample_solid(barrel, dartcast.SamplingOptions(spacing=0.3)).points
+    particles = dartcast.sample_solid(barrel, dartcast.records.SamplingOptions(spacing=0.3)).points
     surface = dartcast.solid_of_surface(barrel)
     added = bodies.add(particles, dartcast.BodyOptions(mass=2.0, damping=10.0, surface=surface))
     assert added.body == 0 and added.surface.refusal == dartcast.records.SolidRefusal.NONE

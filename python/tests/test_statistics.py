@@ -43,8 +43,8 @@ def test_residence_times_are_those_to_the_wall() -> None:
 
 def test_passages_have_times_and_ages() -> None:
     simulation = channel(xmax=dartcast.Escape())
-    plane = dartcast.SectionPlane("half", [2.0, 0.0, 0.0], [1.0, 0.0, 0.0])
-    disc = dartcast.SectionPlane("disc", [2.0, 0.0, 0.0], [-3.0, 0.0, 0.0], 0.5)
+    plane = dartcast.records.SectionPlane("half", [2.0, 0.0, 0.0], [1.0, 0.0, 0.0])
+    disc = dartcast.records.SectionPlane("disc", [2.0, 0.0, 0.0], [-3.0, 0.0, 0.0], 0.5)
     simulation.set_statistics(dartcast.StatisticsOptions(planes=[plane, disc]))
     for _ in range(2):
         simulation.step()  # particles of a later start have later times, not greater ages
@@ -138,11 +138,11 @@ def test_pathlines_have_contacts_and_are_written(tmp_path: pathlib.Path) -> None
 
 def test_options_out_of_range_are_refused() -> None:
     simulation = channel()
-    plane = dartcast.SectionPlane("half", [2.0, 0.0, 0.0], [1.0, 0.0, 0.0])
-    for planes in ([plane, plane], [dartcast.SectionPlane("a b", [0.0, 0.0, 0.0], [1.0, 0.0, 0.0])],
-                   [dartcast.SectionPlane("p", [0.0, 0.0, 0.0], [0.0, 0.0, 0.0])],
-                   [dartcast.SectionPlane("p", [np.nan, 0.0, 0.0], [1.0, 0.0, 0.0])],
-                   [dartcast.SectionPlane("p", [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], -1.0)]):
+    plane = dartcast.records.SectionPlane("half", [2.0, 0.0, 0.0], [1.0, 0.0, 0.0])
+    for planes in ([plane, plane], [dartcast.records.SectionPlane("a b", [0.0, 0.0, 0.0], [1.0, 0.0, 0.0])],
+                   [dartcast.records.SectionPlane("p", [0.0, 0.0, 0.0], [0.0, 0.0, 0.0])],
+                   [dartcast.records.SectionPlane("p", [np.nan, 0.0, 0.0], [1.0, 0.0, 0.0])],
+                   [dartcast.records.SectionPlane("p", [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], -1.0)]):
         with pytest.raises(dartcast.InvalidArgument):
             simulation.set_statistics(dartcast.StatisticsOptions(planes=planes))
     assert not simulation.statistics_options.any()

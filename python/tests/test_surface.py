@@ -6,23 +6,23 @@ import numpy as np
 import pytest
 
 
-def sheet(columns: int = 3) -> dartcast.Surface:
+def sheet(columns: int = 3) -> dartcast.topology.Surface:
     """Unit squares in a row along x, at z = 0. The normals point to +z."""
     x, y = np.meshgrid(np.arange(columns + 1.0), [0.0, 1.0])
     points = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)
     up = columns + 1
     quads = np.array([[i, i + 1, i + 1 + up, i + up] for i in range(columns)])
-    return dartcast.Surface(dartcast.MeshData(points, {"quad": quads}))
+    return dartcast.topology.Surface(dartcast.MeshData(points, {"quad": quads}))
 
 
-def fold() -> dartcast.Surface:
+def fold() -> dartcast.topology.Surface:
     """Two squares with the edge x = 1 in common: one lies in the plane z = 0, the other stands upright."""
     points = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [1, 0, 1], [1, 1, 1]], dtype=float)
-    return dartcast.Surface(dartcast.MeshData(points, {"quad": np.array([[0, 1, 2, 3], [1, 4, 5, 2]])}))
+    return dartcast.topology.Surface(dartcast.MeshData(points, {"quad": np.array([[0, 1, 2, 3], [1, 4, 5, 2]])}))
 
 
-def at(surface: dartcast.Surface, x: list[float]) -> dartcast.SurfacePlace:
-    return dartcast.SurfaceLocator(surface).nearest(surface, x).place
+def at(surface: dartcast.topology.Surface, x: list[float]) -> dartcast.topology.SurfacePlace:
+    return dartcast.topology.SurfaceLocator(surface).nearest(surface, x).place
 
 
 def test_a_flat_path_is_straight() -> None:
@@ -72,14 +72,14 @@ def test_responses_have_their_known_end(respond: object, end: list[float]) -> No
 
 
 def test_many_places_step_as_one_by_one() -> None:
-    surface = dartcast.Surface(dartcast.generate_barrel(staves=8, rows=4, rings=2))
+    surface = dartcast.topology.Surface(dartcast.generate_barrel(staves=8, rows=4, rings=2))
     random = np.random.default_rng(7)
-    starts = dartcast.SurfaceLocator(surface).nearest(surface, random.normal(0.0, 0.3, (40, 3)))[0]
+    starts = dartcast.topology.SurfaceLocator(surface).nearest(surface, random.normal(0.0, 0.3, (40, 3)))[0]
     ways = random.normal(0.0, 0.2, (40, 3))
     many = starts.copy()
     report = dartcast.advance(surface, many, ways)
     for i in range(40):
-        place = dartcast.SurfacePlace((int(starts["cell"][i]), int(starts["simplex"][i])), starts["weights"][i])
+        place = dartcast.topology.SurfacePlace((int(starts["cell"][i]), int(starts["simplex"][i])), starts["weights"][i])
         step = dartcast.step(surface, place, ways[i], particle=i)
         assert step.length == report.steps["length"][i]
         assert np.array_equal(surface.point(place), surface.point(many[i:i + 1])[0])
@@ -122,26 +122,26 @@ def test_a_blocked_face_is_a_wall_and_holds() -> None:
 def test_a_limit_ends_a_step() -> None:
     surface = sheet()
     step = dartcast.step(surface, at(surface, [0.5, 0.25, 0.0]), [2.0, 0.0, 0.0],
-                         options=dartcast.SurfaceOptions(max_crossings=2))
+                         options=dartcast.topology.SurfaceOptions(max_crossings=2))
     assert step.end == dartcast.topology.SurfaceEnd.LIMIT and step.crossings == 2 and step.remaining[0] > 0.5
 
 
 def test_places_follow_an_edit() -> None:
     surface = sheet()
     xs = np.array([[0.25, 0.75, 0.0], [1.25, 0.75, 0.0], [2.5, 0.5, 0.0], [0.5, 0.5, 0.0]])
-    places = dartcast.SurfaceLocator(surface).nearest(surface, xs)[0]
+    places = dartcast.topology.SurfaceLocator(surface).nearest(surface, xs)[0]
     cell = int(places["cell"][0])
-    with dartcast.SurfaceEdit(surface) as edit:
+    with dartcast.topology.SurfaceEdit(surface) as edit:
         middle = dartcast.topology.split_edge(edit.topology, (cell, 0))
         assert np.isclose(edit.position(middle.vertex)[2], 0.0)
-        a = next(dartcast.Dart(middle.cells[0], k) for k in range(5)
+        a = next(dartcast.topology.Dart(middle.cells[0], k) for k in range(5)
                  if edit.map.origin((middle.cells[0], k)) == middle.vertex)
         opposite = edit.map.phi1(edit.map.phi1(a))
         assert len(dartcast.topology.split_face(edit.topology, a, opposite)) == 2
         report = edit.commit()
     assert report.gone and {g.source for g in report.gone} == {0}
     for i, x in enumerate(xs):
-        old = dartcast.SurfacePlace((int(places["cell"][i]), int(places["simplex"][i])), places["weights"][i])
+        old = dartcast.topology.SurfacePlace((int(places["cell"][i]), int(places["simplex"][i])), places["weights"][i])
         new = dartcast.topology.followed(surface, report, old)
         assert new is not None and np.allclose(surface.point(new), x)
     assert len(surface.positions) == 9
@@ -151,7 +151,7 @@ def test_places_of_a_removed_face_are_gone() -> None:
     surface = sheet()
     place, other = at(surface, [0.5, 0.5, 0.0]), at(surface, [2.5, 0.5, 0.0])
     assert place.triangle is not None
-    with dartcast.SurfaceEdit(surface) as edit:
+    with dartcast.topology.SurfaceEdit(surface) as edit:
         dartcast.topology.remove(edit.topology, place.triangle.cell)
         report = edit.commit()
     assert dartcast.topology.followed(surface, report, place) is None
@@ -161,9 +161,9 @@ def test_places_of_a_removed_face_are_gone() -> None:
 def test_an_edit_without_a_commit_changes_nothing() -> None:
     surface = sheet()
     before, cells = surface.positions.copy(), surface.map.cells().tolist()
-    with dartcast.SurfaceEdit(surface) as edit:
+    with dartcast.topology.SurfaceEdit(surface) as edit:
         dartcast.topology.split_edge(edit.topology, (cells[0], 0))
-    with pytest.raises(KeyError, match="mine"), dartcast.SurfaceEdit(surface) as edit:
+    with pytest.raises(KeyError, match="mine"), dartcast.topology.SurfaceEdit(surface) as edit:
         dartcast.topology.split_edge(edit.topology, (cells[0], 0))
         raise KeyError("mine")
     assert np.array_equal(surface.positions, before) and surface.map.cells().tolist() == cells
@@ -171,11 +171,11 @@ def test_an_edit_without_a_commit_changes_nothing() -> None:
 
 def test_an_open_edit_locks_the_surface() -> None:
     surface = sheet()
-    with dartcast.SurfaceEdit(surface):
+    with dartcast.topology.SurfaceEdit(surface):
         with pytest.raises(dartcast.Error):
             surface.move(surface.positions.copy())
         with pytest.raises(dartcast.Error):
-            dartcast.SurfaceEdit(surface)
+            dartcast.topology.SurfaceEdit(surface)
     surface.move(surface.positions.copy())
 
 
@@ -198,7 +198,7 @@ def test_what_does_not_fit_is_refused() -> None:
     t = place.triangle
     assert t is not None
     with pytest.raises(dartcast.InvalidMesh):
-        dartcast.Surface(dartcast.MeshData(np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0]]),
+        dartcast.topology.Surface(dartcast.MeshData(np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0]]),
                                            {"triangle": np.array([[0, 1, 2]])}))
     with pytest.raises(dartcast.InvalidMesh):  # a face without area: nothing is moved
         surface.move(surface.positions * [0.0, 1.0, 1.0])
@@ -212,10 +212,10 @@ def test_what_does_not_fit_is_refused() -> None:
     with pytest.raises(dartcast.InvalidArgument):
         dartcast.step(surface, place, [np.nan, 0.0, 0.0])
     with pytest.raises(dartcast.InvalidArgument):
-        dartcast.step(surface, dartcast.SurfacePlace(t, [0.9, 0.9, 0.9]), [0.1, 0.0, 0.0])
+        dartcast.step(surface, dartcast.topology.SurfacePlace(t, [0.9, 0.9, 0.9]), [0.1, 0.0, 0.0])
     with pytest.raises(dartcast.InvalidArgument):
-        dartcast.step(surface, place, [0.1, 0.0, 0.0], options=dartcast.SurfaceOptions(max_contacts=0))
-    locator = dartcast.SurfaceLocator(surface)
+        dartcast.step(surface, place, [0.1, 0.0, 0.0], options=dartcast.topology.SurfaceOptions(max_contacts=0))
+    locator = dartcast.topology.SurfaceLocator(surface)
     surface.move(surface.positions + [0.0, 0.0, 1.0])
     with pytest.raises(dartcast.InvalidArgument):
         locator.nearest(surface, np.zeros((2, 3)))

@@ -100,7 +100,7 @@ def fits(value: object, kind: ast.expr, scope: type) -> bool:
         return type(value) is int
     named = {"float": float, "bool": bool, "str": str}.get(text)
     if named is None:
-        where = dartcast._core if hasattr(dartcast._core, text.split(".")[0]) else dartcast
+        where = dartcast._core if hasattr(dartcast._core, text.split(".")[0]) else dartcast.topology
         named = getattr(scope, text, None) or functools.reduce(getattr, text.split("."), where)
     return type(value) is named
 

@@ -23,7 +23,7 @@ def test_a_linear_field_is_exact_between_points():
     field = dartcast.VectorField(env.complex, env.positions * [1.0, 2.0, 3.0])
     x = np.array([0.21, 0.34, 0.83])
     assert np.allclose(at(field, env, x), x * [1, 2, 3])
-    assert field.steady and field.frame == dartcast.FieldFrame.SPACE and field.place == dartcast.FieldPlace.POINTS
+    assert field.steady and field.frame == dartcast.records.FieldFrame.SPACE and field.place == dartcast.records.FieldPlace.POINTS
     assert np.allclose(field.values[:27], env.positions * [1, 2, 3]) and len(field.rest) == 0
     assert not field.values.flags.writeable and dartcast.records.VelocityField is dartcast.VectorField
 
@@ -31,7 +31,7 @@ def test_a_linear_field_is_exact_between_points():
 def test_a_field_of_cells_is_constant_in_each():
     env = scene()
     values = np.arange(3.0 * 48).reshape(-1, 3)
-    samples = dartcast.records.field_samples([0.0], [values], dartcast.FieldPlace.CELLS)
+    samples = dartcast.records.field_samples([0.0], [values], dartcast.records.FieldPlace.CELLS)
     field = dartcast.VectorField(env.complex, samples)
     x = np.array([0.21, 0.34, 0.83])
     cell = env.locate(x).simplex.cell
@@ -46,7 +46,7 @@ def test_samples_are_linear_in_time():
         asked.append(k)
         return np.full((27, 3), float(k))
 
-    field = dartcast.VectorField(env.complex, dartcast.FieldSamples(times=[0.0, 1.0, 2.0], read=read, period=4.0))
+    field = dartcast.VectorField(env.complex, dartcast.records.FieldSamples(times=[0.0, 1.0, 2.0], read=read, period=4.0))
     field.hold(0.0, 1.5)
     field.set_times([0.25, 1.5], env.complex)
     assert np.allclose(at(field, env, [0.2, 0.3, 0.4]), 0.25) and np.allclose(at(field, env, [0.2, 0.3, 0.4], 1), 1.5)
@@ -63,7 +63,7 @@ def test_samples_are_linear_in_time():
 def test_a_field_of_the_mesh_turns_with_it():
     env = scene()
     rest = env.positions
-    field = dartcast.VectorField(env.complex, np.tile([1.0, 0, 0], (27, 1)), dartcast.FieldFrame.MESH)
+    field = dartcast.VectorField(env.complex, np.tile([1.0, 0, 0], (27, 1)), dartcast.records.FieldFrame.MESH)
     env.move(np.c_[-rest[:, 1], rest[:, 0], rest[:, 2]])
     assert np.allclose(at(field, env, np.array([-0.3, 0.2, 0.4])), [0, 1, 0])
     assert np.allclose(field.rest[:27], rest)
@@ -95,7 +95,7 @@ def test_what_does_not_fit_is_refused():
     with pytest.raises(dartcast.InvalidArgument):
         dartcast.records.field_samples([0.0, 1.0], [np.zeros((27, 3))])
     with pytest.raises(dartcast.InvalidArgument):
-        dartcast.VectorField(env.complex, dartcast.FieldSamples())
+        dartcast.VectorField(env.complex, dartcast.records.FieldSamples())
     longer = dartcast.records.field_samples([0.0, 1.0], [np.zeros((27, 3))] * 2)
     longer.times = [0.0, 1.0, 2.0]
     with pytest.raises(IndexError):
@@ -113,7 +113,7 @@ def test_what_a_reader_raises_comes_out():
             raise OSError("no sample")
         return np.zeros((27, 3))
 
-    field = dartcast.VectorField(env.complex, dartcast.FieldSamples(times=[0.0, 1.0], read=read))
+    field = dartcast.VectorField(env.complex, dartcast.records.FieldSamples(times=[0.0, 1.0], read=read))
     with pytest.raises(OSError, match="no sample"):
         field.set_times([0.5], env.complex)
     with pytest.raises(dartcast.InvalidArgument, match="moment"):

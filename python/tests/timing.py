@@ -52,7 +52,7 @@ def time_response() -> tuple[float, int]:
     env, parts = scene(1000)
     targets = parts.positions + np.array([0.0, 0.0, 0.5])
     v = np.tile([0.0, 0.0, 0.5], (1000, 1))
-    options = dartcast.StepOptions(max_contacts=2)
+    options = dartcast.records.StepOptions(max_contacts=2)
     report = env.advance(parts.copy(), targets, keep, options=options)
     asked = best_step(lambda p: env.advance(p, targets, work, options=options), parts)
     plain = best_step(lambda p: env.advance(p, targets, dartcast.Reflect(), velocities=v.copy(), dt=1.0, options=options), parts)

@@ -72,7 +72,7 @@ def ended(c: dc.topology.CellComplex) -> dc.topology.ComplexEdit:
 
 
 def of_planes() -> Calls:
-    blade = dc.BladePath([[[0, 0, 0], [0, 0, 1]], [[1, 0, 0], [1, 0, 1]], [[2, 1, 0], [2, 1, 1]]])
+    blade = dc.topology.BladePath([[[0, 0, 0], [0, 0, 1]], [[1, 0, 0], [1, 0, 1]], [[2, 1, 0], [2, 1, 1]]])
     disc = dc.Disc(radius=2.0, sides=8)
     return {
         "plane_through": lambda: dc.topology.plane_through([0, 0, 2], [0, 0, 4]),
@@ -128,9 +128,9 @@ def of_ends() -> Calls:
     with dc.topology.ComplexEdit(c) as edit:
         dc.topology.unsew(edit.topology, inner_face(edit.map))
         edit.commit()
-    plane = dc.Plane(offset=1.0)
+    plane = dc.topology.Plane(offset=1.0)
 
-    def ends(edit: dc.topology.ComplexEdit) -> list[dc.CellFace]:
+    def ends(edit: dc.topology.ComplexEdit) -> list[dc.topology.CellFace]:
         return dc.topology.open_faces(edit, edit.map.cells(), plane, 1e-9)
 
     def sew(edit: dc.topology.ComplexEdit) -> None:

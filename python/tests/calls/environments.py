@@ -33,7 +33,7 @@ def of_making() -> Calls:
         "Environment.validity": env.validity, "Environment.awaits_advance": lambda: env.awaits_advance(particles),
         "Environment.check_advance": lambda: env.check_advance(particles),
         "Environment.check_advance: refused": refused(
-            lambda: env.check_advance(particles, dc.StepOptions(max_slices=0))),
+            lambda: env.check_advance(particles, dc.records.StepOptions(max_slices=0))),
         "Environment.add": lambda: env.add(x), "Environment.add: one": lambda: env.add(
             dc.Particles(), state.at(), state.position),
         "Environment.add: set": lambda: env.add(dc.Particles(), x),
@@ -130,11 +130,11 @@ def answers() -> dict[str, dict[str, object]]:
         "none": {}, "rounds": {"respond": lambda contacts, walls: -0.5 * contacts["unused"]},
         "rounds, marks": {"respond": lambda c, walls: (-0.5 * c["unused"], np.zeros(len(c), dtype=bool))},
         "per contact": {"respond": lambda contact, walls, earlier: -contact.unused, "per_contact": True},
-        "per contact, record": {"respond": lambda contact, walls, earlier: dc.AfterContact(-contact.unused),
+        "per contact, record": {"respond": lambda contact, walls, earlier: dc.records.AfterContact(-contact.unused),
                                 "per_contact": True},
         "per contact, stop": {"respond": lambda contact, walls, earlier: None, "per_contact": True}}
     for response in (dc.Reflect(0.5, friction=0.1), dc.Slide(), dc.Stick(), dc.Absorb(), dc.Escape(),
-                     dc.WallResponse("slide"), dc.WallResponses(dc.Slide())):
+                     dc.records.WallResponse("slide"), dc.records.WallResponses(dc.Slide())):
         table[repr(response)] = {"respond": response} | by_library
     table["by patch"] = {"respond": {None: dc.Reflect(0.9), "xmin": dc.Slide()}} | by_library
     table["acceleration"] = {"respond": dc.Reflect(), "acceleration": dc.records.Acceleration([0, 0, -1.0], 0.3)} | by_library
@@ -149,7 +149,7 @@ def wrong_answers() -> dict[str, dict[str, object]]:
         "type": {"respond": lambda contact, walls, earlier: "text", "per_contact": True},
         "no velocities": {"respond": dc.Reflect()}, "no response": {"respond": "slide"},
         "patch": {"respond": {"nowhere": dc.Slide()}, "velocities": np.zeros((COUNT, 3)), "dt": 1.0},
-        "options": {"options": dc.StepOptions(max_slices=0)}}
+        "options": {"options": dc.records.StepOptions(max_slices=0)}}
 
 
 def of_steps() -> Calls:
@@ -176,7 +176,7 @@ def of_steps() -> Calls:
 
 
 def of_shared() -> Calls:
-    part = dc.formats.box_part(dc.BoxOptions(cells=[3, 3, 3]), 1, 0)
+    part = dc.formats.box_part(dc.formats.BoxOptions(cells=[3, 3, 3]), 1, 0)
     env = dc.SharedEnvironment(part, OneRank(), 1)
     particles = dc.SharedParticles(2)
     env.add(particles, np.full((5, 3), 0.4))
@@ -200,7 +200,7 @@ def of_shared() -> Calls:
         "SharedStep": lambda: dc.records.SharedStep(left=1),
         "SharedEnvironment": lambda: dc.SharedEnvironment(part, OneRank(), threads=1),
         "SharedEnvironment: refused": refused(lambda: dc.SharedEnvironment(
-            dc.formats.box_part(dc.BoxOptions(cells=[3, 3, 3]), 2, 0), OneRank())),
+            dc.formats.box_part(dc.formats.BoxOptions(cells=[3, 3, 3]), 2, 0), OneRank())),
         "SharedEnvironment.whole": lambda: env.whole(int(particles.cells[0])),
         "SharedEnvironment.whole: refused": refused(lambda: env.whole(10**6)),
         "SharedEnvironment.add": add,

@@ -51,7 +51,7 @@ def of_deformations() -> Calls:
         "Deformation.load_frames": read, "Deformation.load_frames: raised": refused(
             lambda: dc.Deformation([frames(raising)], REST).load_frames(0.5)),
         "deformation_kind": lambda: dc.records.deformation_kind("bend"), "name_of": lambda: dc.formats.name_of(dc.records.EventKind.CUT),
-        "name_of: deformation": lambda: dc.formats.name_of(dc.DeformationKind.BEND),
+        "name_of: deformation": lambda: dc.formats.name_of(dc.records.DeformationKind.BEND),
     }
 
 
@@ -62,7 +62,7 @@ def of_fields() -> Calls:
     field = dc.VectorField(env.complex, values[0])
     simplex = env.locate([0.21, 0.34, 0.83]).simplex
     corners, w = env.complex.corners(simplex), [0.25] * 4
-    samples = dc.FieldSamples(times=[0.0, 1.0], read=lambda k: values[k], period=4.0)
+    samples = dc.records.FieldSamples(times=[0.0, 1.0], read=lambda k: values[k], period=4.0)
     turned = environment()
 
     def read() -> None:
@@ -77,7 +77,7 @@ def of_fields() -> Calls:
         report = own.edit(lambda edit: dc.topology.split_edge(edit.topology, (first(edit.map), 0)))
         own_field.update_after_edit(report, own.complex)
 
-    mesh_field = dc.VectorField(turned.complex, turned.positions.copy(), dc.FieldFrame.MESH)
+    mesh_field = dc.VectorField(turned.complex, turned.positions.copy(), dc.records.FieldFrame.MESH)
     bad = dc.topology.ComplexEditReport(placed=[dc.topology.PlacedVertex(3, np.array([999]), [1.0])])
     return {
         "VectorField": lambda: dc.VectorField(env.complex, values[0]),
@@ -87,7 +87,7 @@ def of_fields() -> Calls:
         "VectorField: refused": refused(lambda: dc.VectorField(env.complex, values[0][1:].copy())),
         "VectorField.hold": read, "VectorField.set_times": read,
         "VectorField.set_times: refused": refused(lambda: field.set_times([], env.complex)),
-        "VectorField.set_times: raised": refused(lambda: dc.VectorField(env.complex, dc.FieldSamples(
+        "VectorField.set_times: raised": refused(lambda: dc.VectorField(env.complex, dc.records.FieldSamples(
             times=[0.0, 1.0], read=raising)).set_times([0.5], env.complex, threads=1)),
         "VectorField.at": lambda: field.at(env.complex, simplex, w, corners),
         "VectorField.at: mesh": lambda: mesh_field.at(turned.complex, (first(turned.map), 0), w, corners),

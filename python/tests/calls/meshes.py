@@ -92,7 +92,7 @@ def of_selections() -> Calls:
 
 
 def of_generators() -> Calls:
-    options = dc.BoxOptions(cells=[2, 2, 2], mixed=True, jitter=0.2)
+    options = dc.formats.BoxOptions(cells=[2, 2, 2], mixed=True, jitter=0.2)
     vessel = {"core": 2, "rings": 1, "tissue_layers": 1, "step_length": 1.5e-3}
     return {
         "generate_box": lambda: dc.generate_box(options), "generate_box: by names": lambda: box(),
@@ -122,21 +122,21 @@ def of_files() -> Calls:
     surfaces = dc.formats.SurfaceScene(surfaces=[dc.formats.NamedSurface(region="lumen", file=surface)])
     return table | {
         "read_mesh: defects": lambda: dc.read_mesh(broken), "read_mesh: refused": refused(lambda: dc.read_mesh(3)),
-        "read_mesh: little memory": lambda: dc.read_mesh(path, dc.ReadOptions(max_memory=1000)),
+        "read_mesh: little memory": lambda: dc.read_mesh(path, dc.formats.ReadOptions(max_memory=1000)),
         "read_valid_mesh": lambda: dc.formats.read_valid_mesh(path),
         "read_valid_mesh: refused": refused(lambda: dc.formats.read_valid_mesh(broken)),
-        "read_surface": lambda: dc.read_surface(surface),
-        "read_surface: refused": refused(lambda: dc.read_surface(FOLDER / "missing.stl")),
+        "read_surface": lambda: dc.formats.read_surface(surface),
+        "read_surface: refused": refused(lambda: dc.formats.read_surface(FOLDER / "missing.stl")),
         "mesh_surfaces": lambda: dc.formats.mesh_surfaces(surfaces),
         "mesh_surfaces: refused": refused(lambda: dc.formats.mesh_surfaces(dc.formats.SurfaceScene(box=0.5))),
-        "check_surface": lambda: dc.formats.check_surface(surface), "check_mesh": lambda: dc.check_mesh(path, threads=1),
+        "check_surface": lambda: dc.formats.check_surface(surface), "check_mesh": lambda: dc.formats.check_mesh(path, threads=1),
         "write_mesh: refused": refused(lambda: dc.write_mesh(mesh, FOLDER / "box.xyz")),
         "write_bytes": lambda: dc.formats.write_bytes(FOLDER / "bytes", b"a few bytes"),
         "write_bytes: refused": refused(lambda: dc.formats.write_bytes(FOLDER / "none" / "bytes", b"")),
         "is_surface_file": lambda: dc.formats.is_surface_file("a.vtu"),
         "mesh_endings": dc.formats.mesh_endings, "surface_endings": dc.formats.surface_endings,
         "writable_mesh_endings": dc.formats.writable_mesh_endings,
-        "MeshFile": lambda: dc.MeshFile(mesh, file.report), "MeshFile.__iter__": lambda: list(file),
+        "MeshFile": lambda: dc.formats.MeshFile(mesh, file.report), "MeshFile.__iter__": lambda: list(file),
         "MeshFile.__repr__": lambda: repr(file), "MeshFile: mesh alone": lambda: dc.read_mesh(path).mesh.points,
     }
 
@@ -163,9 +163,9 @@ def of_parts() -> Calls:
         "partition": lambda: dc.formats.partition(mesh, 4), "partition: refused": refused(lambda: dc.formats.partition(mesh, 0)),
         "mesh_part": lambda: dc.formats.mesh_part(mesh, owners, 3, 2),
         "mesh_part: refused": refused(lambda: dc.formats.mesh_part(mesh, owners[:4], 3, 2)),
-        "has_parts": lambda: dc.formats.has_parts(dc.BoxOptions()),
-        "box_part": lambda: dc.formats.box_part(dc.BoxOptions(cells=[4, 4, 4]), 3, 1),
-        "box_part: refused": refused(lambda: dc.formats.box_part(dc.BoxOptions(mixed=True), 1, 0)),
+        "has_parts": lambda: dc.formats.has_parts(dc.formats.BoxOptions()),
+        "box_part": lambda: dc.formats.box_part(dc.formats.BoxOptions(cells=[4, 4, 4]), 3, 1),
+        "box_part: refused": refused(lambda: dc.formats.box_part(dc.formats.BoxOptions(mixed=True), 1, 0)),
         "write_mesh_parts": lambda: dc.formats.write_mesh_parts(mesh, 2, path),
         "write_mesh_parts: refused": refused(lambda: dc.formats.write_mesh_parts(mesh, 2, FOLDER / "pieces.vtu")),
         "read_mesh_part": lambda: dc.formats.read_mesh_part(path, 2, 1),

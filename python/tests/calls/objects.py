@@ -26,10 +26,10 @@ def of_edits() -> dict[str, object]:
     c = scenes.complex_of()
     edit = dc.topology.ComplexEdit(c)
     made = dc.topology.subdivide(edit, scenes.first(edit.map))
-    surface = dc.Surface(dc.generate_barrel(staves=8, rows=4, rings=2))
+    surface = dc.topology.Surface(dc.generate_barrel(staves=8, rows=4, rings=2))
     return {"ComplexEdit": edit, "Transaction": edit.topology, "Subdivided": made, "Subdivision": made.subdivision,
-            "SurfaceEdit": dc.SurfaceEdit(surface),
-            "Surface": dc.Surface(dc.generate_barrel(staves=8, rows=4, rings=2))}
+            "SurfaceEdit": dc.topology.SurfaceEdit(surface),
+            "Surface": dc.topology.Surface(dc.generate_barrel(staves=8, rows=4, rings=2))}
 
 
 def of_particles() -> dict[str, object]:
@@ -40,11 +40,11 @@ def of_particles() -> dict[str, object]:
     spheres = particles.copy()
     trace = env.trace(particles, 0, targets)[0]
     overlapping = dc.advance_spheres(env, spheres, np.full(scenes.COUNT, 0.05), targets)
-    report = env.advance(particles, targets, options=dc.StepOptions(max_contacts=1))
+    report = env.advance(particles, targets, options=dc.records.StepOptions(max_contacts=1))
     field = dc.VectorField(env.complex, env.positions.copy())
     return {"Environment": env, "Particles": particles, "UpdateReport": update, "Trace": trace, "StepReport": report,
             "SphereReport": overlapping, "VectorField": field, "Deformation": dc.Deformation([], env.positions),
-            "StateHash": dc.records.StateHash((1, 2)), "MeshFile": dc.MeshFile(scenes.box(), dc.formats.MeshReport())}
+            "StateHash": dc.records.StateHash((1, 2)), "MeshFile": dc.formats.MeshFile(scenes.box(), dc.formats.MeshReport())}
 
 
 def of_solids() -> dict[str, object]:
@@ -52,8 +52,8 @@ def of_solids() -> dict[str, object]:
     bodies.step()
     saved = bodies.checkpoint()
     catheter = scenes.catheter(scenes.tube())
-    surface = dc.Surface(dc.generate_barrel(staves=8, rows=4, rings=2))
-    place = dc.SurfaceLocator(surface).nearest(surface, [0.3, 0.01, 0.02]).place
+    surface = dc.topology.Surface(dc.generate_barrel(staves=8, rows=4, rings=2))
+    place = dc.topology.SurfaceLocator(surface).nearest(surface, [0.3, 0.01, 0.02]).place
     trace = dc.topology.SurfaceTrace()
     report = dc.advance(surface, dc.topology.surface_places([place]), np.array([[0.0, 0.5, 0.1]]), threads=1)
     dc.step(surface, place, [0.0, 0.5, 0.1], trace=trace)
@@ -69,7 +69,7 @@ def of_solids() -> dict[str, object]:
 def of_simulations() -> dict[str, object]:
     simulation = scenes.simulation()
     options = dc.StatisticsOptions(hits=True, residence=True, pathlines_every=2)
-    options.planes = [dc.SectionPlane("a-plane-with-a-long-name", [0.5, 0.5, 0.5], [0.0, 0.0, 1.0])]
+    options.planes = [dc.records.SectionPlane("a-plane-with-a-long-name", [0.5, 0.5, 0.5], [0.0, 0.0, 1.0])]
     simulation.set_statistics(options)
     simulation.add_body(scenes.BODY, dc.BodyOptions(mass=2.0))
     simulation.step()
@@ -78,7 +78,7 @@ def of_simulations() -> dict[str, object]:
 
 
 def of_parts() -> dict[str, object]:
-    part = dc.formats.box_part(dc.BoxOptions(cells=[3, 3, 3]), 1, 0)
+    part = dc.formats.box_part(dc.formats.BoxOptions(cells=[3, 3, 3]), 1, 0)
     environment = dc.SharedEnvironment(part, scenes.OneRank(), 1)
     particles = dc.SharedParticles(2)
     environment.add(particles, np.full((5, 3), 0.4))

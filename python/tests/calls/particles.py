@@ -46,11 +46,11 @@ def of_states() -> Calls:
         "placement": lambda: dc.topology.placement(m, state.at(), corners, [0.5, 0.5, 0.5]),
         "placement: refused": refused(lambda: dc.topology.placement(m, (12345, 0), corners, [0, 0, 0])),
         "ParticleState.at": state.at, "ParticleState.put": lambda: dc.topology.ParticleState().put((3, 2), [1, 2, 3]),
-        "StepOptions.check": dc.StepOptions().check,
-        "StepOptions.check: refused": refused(dc.StepOptions(max_slices=0).check),
+        "StepOptions.check": dc.records.StepOptions().check,
+        "StepOptions.check: refused": refused(dc.records.StepOptions(max_slices=0).check),
         "check_threads": lambda: dc.records.check_threads(1),
         "check_threads: refused": refused(lambda: dc.records.check_threads(10**6)),
-        "max_threads": dc.max_threads, "is_radius": lambda: dc.predicates.is_radius(1.0), "is_mass": lambda: dc.predicates.is_mass(1.0),
+        "max_threads": dc.records.max_threads, "is_radius": lambda: dc.predicates.is_radius(1.0), "is_mass": lambda: dc.predicates.is_mass(1.0),
         "RigidMover.velocity_at": lambda: dc.predicates.RigidMover(turns=True).velocity_at([2.0, 0, 0]),
         "RigidMotion.velocity_at": lambda: dc.records.RigidMotion().velocity_at([2.0, 0, 0]),
     }
@@ -82,13 +82,13 @@ def of_audits() -> Calls:
 def of_responses() -> Calls:
     env, particles = with_particles()
     v, statuses = np.ones((COUNT, 3)), np.zeros(COUNT, np.uint8)
-    report = env.advance(particles, particles.positions + 5.0, options=dc.StepOptions(max_contacts=1))
+    report = env.advance(particles, particles.positions + 5.0, options=dc.records.StepOptions(max_contacts=1))
     walls = report.walls_of(0)
-    responses = dc.WallResponses({None: dc.Slide(), "zmax": dc.Reflect(0.25)}, env.map)
+    responses = dc.records.WallResponses({None: dc.Slide(), "zmax": dc.Reflect(0.25)}, env.map)
     contact = dc.topology.SurfaceContact(normal=[0, 0, 1])
     return {
-        "WallResponses": lambda: dc.WallResponses({None: dc.Slide(), "zmax": dc.Reflect(0.25)}, env.map),
-        "WallResponses: refused": refused(lambda: dc.WallResponses({"zmax": dc.Slide()})),
+        "WallResponses": lambda: dc.records.WallResponses({None: dc.Slide(), "zmax": dc.Reflect(0.25)}, env.map),
+        "WallResponses: refused": refused(lambda: dc.records.WallResponses({"zmax": dc.Slide()})),
         "WallResponses.set": lambda: responses.set(1, dc.Stick()), "WallResponses.of": lambda: responses.of(1),
         "WallResponses.set: refused": refused(lambda: responses.set(1, 5)),
         "respond_with": lambda: dc.respond_with(dc.Stick(), v, statuses, 0.1),

@@ -71,7 +71,7 @@ BODY = np.array([[0.5, 0.5, 0.6], [0.6, 0.5, 0.6], [0.5, 0.6, 0.6], [0.5, 0.5, 0
 
 
 def bodies(env: dc.Environment) -> dc.Bodies:
-    made = dc.Bodies(env, dc.BodiesOptions(dt=1e-2, gravity=[0.0, 0.0, -10.0]))
+    made = dc.Bodies(env, dc.records.BodiesOptions(dt=1e-2, gravity=[0.0, 0.0, -10.0]))
     made.add(BODY, dc.BodyOptions(mass=2.0))
     return made
 

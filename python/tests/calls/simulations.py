@@ -40,7 +40,7 @@ def of_making() -> Calls:
         "Simulation: checkpoint": lambda: dc.Simulation(scene, saved, threads=1, after_edit=lambda e: None),
         "Simulation: refused": refused(lambda: dc.Simulation(busy.environment)),
         "Simulation: options refused": refused(lambda: dc.Simulation(env, dc.SimulationOptions(dt=-1.0))),
-        "Simulation: scene refused": refused(lambda: dc.Simulation(dc.Scene(), threads=1)),
+        "Simulation: scene refused": refused(lambda: dc.Simulation(dc.formats.Scene(), threads=1)),
     }
 
 
@@ -50,7 +50,7 @@ def of_adding() -> Calls:
                                                            direction=[0.0, 0.0, 1.0]))
     catheter.moves = [dc.formats.CatheterScene.Move(until=1.0, push=1e-3)]
     body = dc.formats.BodyScene("stone", dc.generate_barrel(staves=6, rows=3, rings=1), scale=0.3, at=[0.5, 0.5, 0.5],
-                        sampling=dc.SamplingOptions(spacing=0.1))
+                        sampling=dc.records.SamplingOptions(spacing=0.1))
     own = simulation()
     inlet = own.environment.map.patch("xmin")
 
@@ -133,9 +133,9 @@ def of_motion() -> Calls:
 
 def of_changes() -> Calls:
     own = simulation()
-    cut = dc.Cut(dc.topology.plane_through([0.3, 0.3, 0.3], [0.0, 0.0, 1.0]), 0.05)
-    events = [dc.Event(0.0, cut), dc.Event(0.1, dc.Carve(dc.topology.box_tool([0.1] * 3, [0.4] * 3), "open"), "absorb")]
-    tied = dc.Event(0.0, dc.Ligature(cut.surface, [0.3, 0.3, 0.3], dc.topology.TyingOptions(0.2, 0.5), 0.3))
+    cut = dc.records.Cut(dc.topology.plane_through([0.3, 0.3, 0.3], [0.0, 0.0, 1.0]), 0.05)
+    events = [dc.records.Event(0.0, cut), dc.records.Event(0.1, dc.records.Carve(dc.topology.box_tool([0.1] * 3, [0.4] * 3), "open"), "absorb")]
+    tied = dc.records.Event(0.0, dc.records.Ligature(cut.surface, [0.3, 0.3, 0.3], dc.topology.TyingOptions(0.2, 0.5), 0.3))
     crowded = dc.formats.AdaptiveSubdivisionScene(1, dc.records.AdaptiveSubdivisionOptions(max_particles=1, min_particles=0))
 
     def follow(s: dc.Simulation) -> None:
@@ -154,16 +154,16 @@ def of_changes() -> Calls:
         "Simulation.set_events": changed(follow), "Simulation.set_after_edit": changed(follow),
         "Simulation.set_after_edit: raised": lambda: raise_after_edit(simulation()),
         "Simulation.set_after_edit: refused": refused(lambda: own.set_after_edit(3)),
-        "Simulation.set_events: refused": refused(lambda: own.set_events([dc.Event(-1.0, cut)])),
+        "Simulation.set_events: refused": refused(lambda: own.set_events([dc.records.Event(-1.0, cut)])),
         "Simulation.set_remeshing": changed(lambda s: s.set_remeshing(dc.formats.RemeshScene(every=1))),
         "Simulation.set_adaptive_subdivision": changed(lambda s: s.set_adaptive_subdivision(crowded)),
         "Simulation.adapt": changed(lambda s: (s.set_adaptive_subdivision(crowded), s.adapt())),
         "Simulation.edit": changed(lambda s: s.edit(lambda edit: dc.topology.subdivide(edit, first(edit.map)))),
         "Simulation.edit: raised": refused(lambda: own.edit(fail)),
         "Simulation.edit: refused": refused(lambda: own.edit(3)), "Simulation.repair": own.repair,
-        "apply": changed(lambda s: dc.records.apply(s, dc.Event(0.0, cut))),
+        "apply": changed(lambda s: dc.records.apply(s, dc.records.Event(0.0, cut))),
         "apply: ligature": changed(lambda s: dc.records.apply(s, tied)),
-        "apply: refused": refused(lambda: dc.records.apply(own, dc.Event(0.0, dc.Cut(dc.Plane([0, 0, 0]), 0.1)))),
+        "apply: refused": refused(lambda: dc.records.apply(own, dc.records.Event(0.0, dc.records.Cut(dc.topology.Plane([0, 0, 0]), 0.1)))),
         "kind_of": lambda: dc.records.kind_of(events[0]),
     }
 
@@ -199,7 +199,7 @@ def of_states() -> Calls:
 
 
 def of_statistics() -> Calls:
-    plane = dc.SectionPlane("middle", [0.5, 0.5, 0.5], [0.0, 0.0, 1.0])
+    plane = dc.records.SectionPlane("middle", [0.5, 0.5, 0.5], [0.0, 0.0, 1.0])
     options = dc.StatisticsOptions(hits=True, residence=True, pathlines_every=2)
     options.planes = [plane]
     before, after = np.random.default_rng(1).uniform(0, 1, (2, 50, 3))
@@ -215,7 +215,7 @@ def of_statistics() -> Calls:
     return {
         "Simulation.set_statistics": changed(lambda s: s.set_statistics(options)),
         "Simulation.set_statistics: refused": refused(lambda: own.set_statistics(
-            dc.StatisticsOptions(planes=[dc.SectionPlane("no name")]))),
+            dc.StatisticsOptions(planes=[dc.records.SectionPlane("no name")]))),
         "find_crossings": lambda: dc.records.find_crossings([plane], before, after, threads=1),
         "find_crossings: refused": refused(lambda: dc.records.find_crossings([plane], before, after[1:], threads=1)),
         "WallHits": dc.WallHits, "WallHits.add": lambda: dc.WallHits().add(env, report),
@@ -256,7 +256,7 @@ def of_scenes() -> Calls:
 
 def of_runs() -> Calls:
     scene = dc.load_scene(SCENE, threads=1)
-    options = dc.RunOptions(threads=1)
+    options = dc.formats.RunOptions(threads=1)
     summary = dc.run(SCENE, threads=1)
     out = FOLDER / "out"
     shown = FOLDER / "shown"
@@ -267,13 +267,13 @@ def of_runs() -> Calls:
         "write_report": lambda: dc.formats.write_report(shown, few),
         "write_report: refused": refused(lambda: dc.formats.write_report(FOLDER / "none")),
         "report_file": lambda: dc.formats.report_file(shown),
-        "run_scene": lambda: dc.run_scene(scene, options), "run": lambda: dc.run(SCENE, threads=1, audit=True),
+        "run_scene": lambda: dc.formats.run_scene(scene, options), "run": lambda: dc.run(SCENE, threads=1, audit=True),
         "run: folder": lambda: dc.run(SCENE, out, threads=1),
         "run: cancelled": lambda: dc.run(SCENE, threads=1, progress=lambda done, all_: done < 2),
         "run: raised": refused(lambda: dc.run(SCENE, threads=1, progress=raising)),
-        "run: refused": refused(lambda: dc.run(dc.Scene(), threads=1)),
+        "run: refused": refused(lambda: dc.run(dc.formats.Scene(), threads=1)),
         "summary_json": lambda: dc.formats.summary_json(summary), "summary_text": lambda: dc.formats.summary_text(summary),
-        "histogram_text": lambda: dc.formats.histogram_text(summary), "version": dc.version,
+        "histogram_text": lambda: dc.formats.histogram_text(summary), "version": dc.formats.version,
     }
 
 

@@ -17,8 +17,8 @@ def barrel() -> dc.MeshData:
 
 
 def of_surfaces() -> Calls:
-    mesh, surface = barrel(), dc.Surface(barrel())
-    locator = dc.SurfaceLocator(surface)
+    mesh, surface = barrel(), dc.topology.Surface(barrel())
+    locator = dc.topology.SurfaceLocator(surface)
     x = np.array([[0.3, 0.01, 0.02], [0.0, 0.3, 0.1]])
     place = locator.nearest(surface, x[0]).place
     places, t = dc.topology.surface_places([place] * 5), place.triangle
@@ -28,7 +28,7 @@ def of_surfaces() -> Calls:
         table[f"Surface.{name}"] = lambda f=getattr(surface, name): f(t)
         table[f"Surface.{name}: refused"] = refused(lambda f=getattr(surface, name): f((0xFFFFFF0, 0)))
     return table | {
-        "Surface": lambda: dc.Surface(mesh), "Surface: refused": refused(lambda: dc.Surface(dc.MeshData())),
+        "Surface": lambda: dc.topology.Surface(mesh), "Surface: refused": refused(lambda: dc.topology.Surface(dc.MeshData())),
         "Surface.move": lambda: surface.move(rest, threads=1),
         "Surface.move: refused": refused(lambda: surface.move(rest[1:])),
         "Surface.set_free": lambda: (surface.set_free(face, False), surface.set_free(face, True)),
@@ -37,16 +37,16 @@ def of_surfaces() -> Calls:
         "Surface.across: refused": refused(lambda: surface.across(t, 3)),
         "Surface.contains": lambda: surface.contains(place), "Surface.contains: many": lambda: surface.contains(places),
         "Surface.point": lambda: surface.point(place), "Surface.point: many": lambda: surface.point(places),
-        "Surface.point: refused": refused(lambda: surface.point(dc.SurfacePlace())),
+        "Surface.point: refused": refused(lambda: surface.point(dc.topology.SurfacePlace())),
         "Surface.place": lambda: surface.place(t, [0.2, 0.3, 0.5]),
         "Surface.place: refused": refused(lambda: surface.place((0xFFFFFF0, 0), [0.2, 0.3, 0.5])),
         "surface_places": lambda: dc.topology.surface_places([place, place]),
         "surface_places: refused": refused(lambda: dc.topology.surface_places([3])),
         "nearest_in_triangle": lambda: dc.topology.nearest_in_triangle(surface, t, x[0]),
         "nearest_in_triangle: refused": refused(lambda: dc.topology.nearest_in_triangle(surface, (0xFFFFFF0, 0), x[0])),
-        "SurfaceLocator": lambda: dc.SurfaceLocator(surface),
-        "SurfaceLocator.nearest": lambda: dc.SurfaceLocator(surface).nearest(surface, x[0]),
-        "SurfaceLocator.nearest: many": lambda: dc.SurfaceLocator(surface).nearest(surface, x),
+        "SurfaceLocator": lambda: dc.topology.SurfaceLocator(surface),
+        "SurfaceLocator.nearest": lambda: dc.topology.SurfaceLocator(surface).nearest(surface, x[0]),
+        "SurfaceLocator.nearest: many": lambda: dc.topology.SurfaceLocator(surface).nearest(surface, x),
         "SurfaceLocator.nearest: refused": refused(lambda: locator.nearest(surface, x)),
         "tangent": lambda: dc.topology.tangent(surface, t, 0, 0.3),
         "tangent: refused": refused(lambda: dc.topology.tangent(surface, (0xFFFFFF0, 0), 0, 0.3)),
@@ -55,15 +55,15 @@ def of_surfaces() -> Calls:
 
 def of_surface_steps() -> Calls:
     """Particles that meet the walls of faces that are not free."""
-    surface = dc.Surface(barrel())
-    place = dc.SurfaceLocator(surface).nearest(surface, [0.3, 0.01, 0.02]).place
+    surface = dc.topology.Surface(barrel())
+    place = dc.topology.SurfaceLocator(surface).nearest(surface, [0.3, 0.01, 0.02]).place
     for c in surface.map.cells()[::3]:
         surface.set_free(int(c), bool(c == place.triangle.cell))
     places, saved = dc.topology.surface_places([place] * 5), dc.topology.surface_places([place] * 5)
 
     def step(respond: object) -> None:
         for way in WAYS:
-            dc.step(surface, dc.SurfacePlace(place.triangle, place.weights), way, respond, trace=dc.topology.SurfaceTrace())
+            dc.step(surface, dc.topology.SurfacePlace(place.triangle, place.weights), way, respond, trace=dc.topology.SurfaceTrace())
 
     def advance(respond: object) -> None:
         places[:] = saved
@@ -77,31 +77,31 @@ def of_surface_steps() -> Calls:
     for name, respond in {"raised": raising, "wrong answer": lambda c: "text"}.items():
         table[f"step: {name}"] = refused(lambda r=respond: step(r))
         table[f"advance: {name}"] = refused(lambda r=respond: advance(r))
-    table["step: refused"] = refused(lambda: dc.step(surface, dc.SurfacePlace(), WAYS[0]))
+    table["step: refused"] = refused(lambda: dc.step(surface, dc.topology.SurfacePlace(), WAYS[0]))
     table["advance: refused"] = refused(lambda: dc.advance(surface, places, WAYS[1:], threads=1))
     return table
 
 
 def of_surface_edits() -> Calls:
-    surface = dc.Surface(barrel())
+    surface = dc.topology.Surface(barrel())
     x = np.array([0.3, 0.01, 0.02])
-    held = dc.Surface(barrel())
-    edit = dc.SurfaceEdit(held)
+    held = dc.topology.Surface(barrel())
+    edit = dc.topology.SurfaceEdit(held)
 
     def undone() -> None:
-        with dc.SurfaceEdit(surface) as own:
+        with dc.topology.SurfaceEdit(surface) as own:
             v = dc.topology.split_edge(own.topology, (first(own.map), 0)).vertex
             own.place(v, own.position(v))
 
     def raised() -> None:
-        with dc.SurfaceEdit(surface) as own:
+        with dc.topology.SurfaceEdit(surface) as own:
             dc.topology.split_edge(own.topology, (first(own.map), 0))
             raise KeyError("out of the edit")
 
     def committed() -> None:
-        own = dc.Surface(barrel())
-        place = dc.SurfaceLocator(own).nearest(own, x).place
-        with dc.SurfaceEdit(own) as own_edit:
+        own = dc.topology.Surface(barrel())
+        place = dc.topology.SurfaceLocator(own).nearest(own, x).place
+        with dc.topology.SurfaceEdit(own) as own_edit:
             dc.topology.split_edge(own_edit.topology, (place.triangle.cell, 0))
             report = own_edit.commit()
         dc.topology.followed(own, report, place)
@@ -109,13 +109,13 @@ def of_surface_edits() -> Calls:
 
     other = dc.topology.SurfaceEditReport(map=dc.topology.EditReport(added=[0xFFFFFF0]))
     return {
-        "SurfaceEdit": lambda: dc.SurfaceEdit(surface), "SurfaceEdit.__enter__": undone, "SurfaceEdit.__exit__": undone,
-        "SurfaceEdit: refused": refused(lambda: dc.SurfaceEdit(held)), "SurfaceEdit.__exit__: raised": refused(raised),
+        "SurfaceEdit": lambda: dc.topology.SurfaceEdit(surface), "SurfaceEdit.__enter__": undone, "SurfaceEdit.__exit__": undone,
+        "SurfaceEdit: refused": refused(lambda: dc.topology.SurfaceEdit(held)), "SurfaceEdit.__exit__: raised": refused(raised),
         "SurfaceEdit.position": lambda: edit.position(0), "SurfaceEdit.place": undone,
         "SurfaceEdit.position: refused": refused(lambda: edit.position(10**6)),
         "SurfaceEdit.place: refused": refused(lambda: edit.place(0, [np.nan, 0.0, 0.0])),
         "SurfaceEdit.commit": committed, "followed": committed,
-        "followed: refused": refused(lambda: dc.topology.followed(surface, other, dc.SurfacePlace())),
+        "followed: refused": refused(lambda: dc.topology.followed(surface, other, dc.topology.SurfacePlace())),
     }
 
 
@@ -146,11 +146,11 @@ def of_bodies() -> Calls:
     return table | {
         "Bodies.move_with": moved, "Bodies.audit": own.audit,
         "Bodies.move_with: refused": refused(lambda: own.move_with(np.zeros((2, 3)))),
-        "Bodies": lambda: dc.Bodies(env, dc.BodiesOptions(dt=0.01), {"zmin": dc.Stick()}),
-        "Bodies: refused": refused(lambda: dc.Bodies(env, dc.BodiesOptions(dt=0.01), {"nowhere": dc.Stick()})),
+        "Bodies": lambda: dc.Bodies(env, dc.records.BodiesOptions(dt=0.01), {"zmin": dc.Stick()}),
+        "Bodies: refused": refused(lambda: dc.Bodies(env, dc.records.BodiesOptions(dt=0.01), {"nowhere": dc.Stick()})),
         "Bodies.add": lambda: bodies(env),
         "Bodies.add: refused": refused(lambda: own.add(BODY, dc.BodyOptions(mass=-1.0))),
-        "Bodies.add: outside": lambda: dc.Bodies(env, dc.BodiesOptions(dt=0.01)).add(BODY + 3.0, dc.BodyOptions()),
+        "Bodies.add: outside": lambda: dc.Bodies(env, dc.records.BodiesOptions(dt=0.01)).add(BODY + 3.0, dc.BodyOptions()),
         "Bodies.step": step, "Bodies.restore": step, "Bodies.checkpoint": own.checkpoint,
         "Bodies.restore: refused": refused(lambda: own.restore(3)),
         "Bodies.apply_impulse": lambda: own.apply_impulse(0, state),
@@ -160,11 +160,11 @@ def of_bodies() -> Calls:
 
 
 def of_samples() -> Calls:
-    mesh, options = barrel(), dc.SamplingOptions(spacing=0.2)
+    mesh, options = barrel(), dc.records.SamplingOptions(spacing=0.2)
     table: Calls = {}
     for name in ("sample_solid", "sample_surface", "sample_volume"):
         table[name] = lambda f=getattr(dc, name): f(mesh, options)
-        table[f"{name}: refused"] = refused(lambda f=getattr(dc, name): f(mesh, dc.SamplingOptions(spacing=-1.0)))
+        table[f"{name}: refused"] = refused(lambda f=getattr(dc, name): f(mesh, dc.records.SamplingOptions(spacing=-1.0)))
     table["overlapping_clusters"] = lambda: dc.records.overlapping_clusters(BODY, 0.2)
     table["overlapping_clusters: refused"] = refused(lambda: dc.records.overlapping_clusters(BODY, -1.0))
     return table
@@ -200,8 +200,8 @@ def of_catheters() -> Calls:
         "Catheter.move_with: refused": refused(lambda: own.move_with(np.zeros((2, 3)))),
         "Catheter.update_after_edit": edited, "Catheter.points": own.points, "Catheter.frames": own.frames,
         "Catheter.state_hash": own.state_hash,
-        "camera_path": lambda: dc.camera_path(env, points, dc.records.CameraOptions(spacing=1e-3)),
-        "camera_path: refused": refused(lambda: dc.camera_path(env, points, dc.records.CameraOptions(spacing=-1.0))),
+        "camera_path": lambda: dc.records.camera_path(env, points, dc.records.CameraOptions(spacing=1e-3)),
+        "camera_path: refused": refused(lambda: dc.records.camera_path(env, points, dc.records.CameraOptions(spacing=-1.0))),
     }
 
 
@@ -234,9 +234,9 @@ def of_solid_sets() -> Calls:
         assert own.move_with(down, own.environment.positions + 0.01).walls_made == 1.0
 
     return {
-        "SolidMesh": lambda: dc.SolidMesh(ROD, edges=[[0, 1]]), "SolidMesh: refused": refused(lambda: dc.SolidMesh(3)),
-        "SolidMesh: refused edges": refused(lambda: dc.SolidMesh(ROD, [[0, 1, 2]])),
-        "SolidMesh: refused triangles": refused(lambda: dc.SolidMesh(ROD, triangles=[0.5])),
+        "SolidMesh": lambda: dc.records.SolidMesh(ROD, edges=[[0, 1]]), "SolidMesh: refused": refused(lambda: dc.records.SolidMesh(3)),
+        "SolidMesh: refused edges": refused(lambda: dc.records.SolidMesh(ROD, [[0, 1, 2]])),
+        "SolidMesh: refused triangles": refused(lambda: dc.records.SolidMesh(ROD, triangles=[0.5])),
         "solid_of_surface": lambda: dc.solid_of_surface(barrel()),
         "solid_of_surface: refused": refused(lambda: dc.solid_of_surface(mesh)),
         "solid_of_cells": lambda: dc.solid_of_cells(mesh),
@@ -245,7 +245,7 @@ def of_solid_sets() -> Calls:
         "solid_of_polyline: refused": refused(lambda: dc.solid_of_polyline(3)),
         "SolidSet": lambda: dc.SolidSet(env), "SolidSet: refused": refused(lambda: dc.SolidSet(None)),
         "SolidSet.add": added, "SolidSet.remove": added,
-        "SolidSet.add: refused": refused(lambda: solids.add(dc.SolidMesh(ROD[:0]))),
+        "SolidSet.add: refused": refused(lambda: solids.add(dc.records.SolidMesh(ROD[:0]))),
         "SolidSet.remove: refused": refused(lambda: solids.remove(7)),
         "SolidSet.update_after_edit": edited, "SolidSet.move_with": moved,
         "SolidSet.move_with: refused": refused(lambda: solids.move_with(ROD, ROD)),
