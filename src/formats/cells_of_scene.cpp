@@ -1,12 +1,11 @@
 // Keeps those cells of a file that a scene's mesh has, by their places in the input file.
-#include "formats/cells_of_scene.hpp"
-
 #include <algorithm>
 #include <cstddef>
 #include <utility>
 
 #include "dartcast/mesh_check.hpp"
 #include "formats/checked_file.hpp"
+#include "formats/scene_files.hpp"
 
 namespace dartcast {
 

@@ -1,6 +1,4 @@
 // Reads a field's files, sample by sample.
-#include "formats/field_files.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,6 +13,7 @@
 #include "dartcast/error.hpp"
 #include "formats/file_series.hpp"
 #include "formats/openfoam.hpp"
+#include "formats/scene_files.hpp"
 #include "simulation/mesh_arrays.hpp"
 #include "simulation/series.hpp"
 

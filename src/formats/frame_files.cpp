@@ -1,6 +1,4 @@
 // Reads frames from mesh files. Only the first is checked as a whole mesh if the others have the same cells.
-#include "formats/frame_files.hpp"
-
 #include <fmt/format.h>
 
 #include <cstdint>
@@ -14,6 +12,7 @@
 #include "formats/format_table.hpp"
 #include "formats/openfoam.hpp"
 #include "formats/point_file.hpp"
+#include "formats/scene_files.hpp"
 #include "formats/vtk.hpp"
 #include "mesh/same_cells.hpp"
 

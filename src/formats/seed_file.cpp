@@ -1,6 +1,4 @@
 // Reads where particles start.
-#include "formats/seed_file.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,6 +11,7 @@
 #include "dartcast/error.hpp"
 #include "formats/csv_table.hpp"
 #include "formats/point_file.hpp"
+#include "formats/scene_files.hpp"
 
 namespace dartcast {
 

@@ -22,7 +22,7 @@
 #include "dartcast/scene_file.hpp"
 #include "formats/file_text.hpp"
 #include "formats/point_file.hpp"
-#include "formats/seed_file.hpp"
+#include "formats/scene_files.hpp"
 #include "output/info.hpp"
 #include "support/data_arrays.hpp"
 #include "support/sample_mesh.hpp"

@@ -1,6 +1,4 @@
 // Frames from files: the fast way gives what reading each file as a mesh gives, in points and in refusals.
-#include "formats/frame_files.hpp"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -17,6 +15,7 @@
 #include "dartcast/generators.hpp"
 #include "dartcast/scene_file.hpp"
 #include "formats/file_text.hpp"
+#include "formats/scene_files.hpp"
 #include "formats/vtk.hpp"
 #include "mesh/same_cells.hpp"
 #include "support/expectations.hpp"
