@@ -1,9 +1,11 @@
-// Generates the mesh of a scene, and selects its free cells and patches.
+// Generates the mesh of a scene, selects its free cells and patches, and cuts a rank's part out.
 #include "simulation/scene_environment.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
+#include <utility>
 #include <variant>
 
 #include "dartcast/error.hpp"
@@ -48,6 +50,14 @@ void select_free_by_value(MeshData& mesh, const FreeValues& by_value) {
   select_free_regions(mesh, tags);
 }
 
+void refuse_if(bool has, std::string_view what) {
+  if (has)
+    throw InvalidArgument(fmt::format(
+        "partition: a scene with {} cannot be spread by cells: leave --partition cells out, and the ranks share "
+        "its particles",
+        what));
+}
+
 }  // namespace
 
 MeshData generated_mesh(const MeshSource& source) { return std::visit(Generator{}, source); }
@@ -81,6 +91,39 @@ MeshData scene_mesh(const EnvironmentScene& scene) {
   if (!report.valid()) throw InvalidMesh("the scene's mesh: " + report.defects.front().message);
   select_cells_and_patches(mesh, scene);
   return mesh;
+}
+
+void check_can_be_spread(const Scene& scene) {
+  refuse_if(scene.collisions.has_value(), "spheres that collide");
+  refuse_if(!scene.bodies.empty(), "bodies");
+  refuse_if(!scene.catheters.empty(), "catheters");
+  refuse_if(!scene.solids.empty(), "solids");
+  refuse_if(!scene.events.empty() || scene.remesh.every > 0 || scene.adaptive_subdivision.every > 0, "edits");
+  refuse_if(scene.statistics.options.any(), "statistics");
+  refuse_if(scene.motion.substeps > 1, "substeps");
+  refuse_if(scene.motion.integrator != Integrator::euler, "the integrator rk4");
+  refuse_if(scene.motion.wall_motion != WallMotion::carried, "points that move at the same time as the walls");
+  for (const FieldScene* field : {&scene.motion.field, &scene.motion.force})
+    refuse_if(!field->files.empty() || static_cast<bool>(field->samples.read), "a field from files");
+  for (const ParticlesScene& p : scene.particles) {
+    refuse_if(p.radius > 0.0, "spheres");
+    const auto* placed = std::get_if<PlacedParticles>(&p.source);
+    const auto* seeds = placed != nullptr ? std::get_if<ParticleSeeds>(&placed->positions) : nullptr;
+    for (std::size_t i = 0; seeds != nullptr && i < seeds->radii.size(); ++i)
+      refuse_if(seeds->radii[i] > 0.0, "spheres");
+  }
+}
+
+MeshPart scene_part(const EnvironmentScene& scene, const Ranks& ranks) {
+  if (const auto* part = std::get_if<MeshPart>(&scene.mesh)) {
+    if (part->parts != ranks.size() || part->part != ranks.rank())
+      throw InvalidArgument(fmt::format("the scene's mesh is part {} of {}, and this is rank {} of {}", part->part,
+                                        part->parts, ranks.rank(), ranks.size()));
+    return *part;
+  }
+  MeshData whole = std::holds_alternative<MeshData>(scene.mesh) ? std::get<MeshData>(scene.mesh) : scene_mesh(scene);
+  check_and_repair(whole);  // a part of it must not be repaired in another way
+  return mesh_part(whole, partition(whole, ranks.size()), ranks.size(), ranks.rank());
 }
 
 }  // namespace dartcast

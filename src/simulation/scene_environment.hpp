@@ -1,4 +1,4 @@
-// The mesh of a scene, without any file.
+// The mesh of a scene, or a rank's part of it, without any file.
 #pragma once
 
 #include "dartcast/mesh_data.hpp"

@@ -17,7 +17,7 @@ class SphereBodyCollider {
  public:
   /// Finds the pairs of spheres, and of spheres and particles of bodies, and solves them together with `walls`, as
   /// Collider::collide(). The bodies get theirs by Bodies::apply_impulse(), for the step that they take after this one
-  /// of the spheres; contacts between them are their own. Momentum changes at walls and by rounding alone.
+  /// of the spheres; contacts between them are their own. Momentum changes at walls and because of rounding alone.
   /// Preconditions: all states are of the complex as it stands; the ids of spheres are below 2^63. The same for any
   /// number of threads.
   CollisionCounts collide(const CellComplex& complex, const CollidingSpheres& spheres,
