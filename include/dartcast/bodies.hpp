@@ -230,7 +230,7 @@ struct BodiesCheckpoint {
 ///  two steps of its acceleration do not explain its speed. The particle is then integrated for the rest of the step,
 ///  along the walls that it would enter.
 ///  2. Pull. The fits are computed again, and Environment::advance() moves the particles towards their goals. Positions
-///  alone change, which takes out energy. The exact goal is the place of rest in the body: where the matching force is
+///  alone change. This takes out energy. The exact goal is the place of rest in the body: where the matching force is
 ///  in balance with the centrifugal force, or with gravity if the body has met a wall. Damping and drag act on
 ///  velocities between the passes.
 ///  3. Edges, for bodies with a surface. Its targets are where the particles carry it. SolidSet::advance() takes it there,

@@ -34,7 +34,7 @@ struct ReadOptions {
   /// memory. An upper bound of the need follows from the sizes that the file announces (formats/read_memory.hpp). It is
   /// checked before the memory is taken; a file that may need more is refused with kind "file".
   std::uint64_t max_memory = 0;
-  /// Cells of second order are taken by their corners, which is a warning with their number. Their middle points are
+  /// Cells of second order are taken by their corners. A warning has their number. Their middle points are
   /// dropped. Without it they are refused, because their sides are curved.
   bool linearise = false;
   /// A .msh file that keeps the mesh made around a scene's surfaces (SurfaceScene). If it was made of the same files

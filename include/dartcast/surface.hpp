@@ -150,7 +150,7 @@ struct SurfaceContact {
 /// The motion of a particle after a contact, in the rest of the step.
 struct AfterSurfaceContact {
   Vec3 displacement;   ///< in the plane of the contact's triangle; a normal part is ignored
-  bool along = false;  ///< run along the wall exactly, if it points into the wall or off it only by rounding
+  bool along = false;  ///< run along the wall exactly, if it points into the wall or off it only because of rounding
 };
 
 /// Decides what follows a contact. It is called from several threads at once for different particles. An empty function

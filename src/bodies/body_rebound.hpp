@@ -19,8 +19,8 @@ class BodyRebounds {
  public:
   /// Finds the pairs that come together within a step, faster than `resting_speed`, and gives the bodies that they
   /// join the impulses of an impact. `pairs`: as found by BodyCollisions. `movers`: the bodies with their velocities;
-  /// out: those after the impact. Returns the number of such pairs. Momentum and angular momentum change by rounding
-  /// alone, and the kinetic energy of joined bodies grows by rounding alone, however far the solver came. Reason: the
+  /// out: those after the impact. Returns the number of such pairs. Momentum and angular momentum change because of rounding
+  /// alone, and the kinetic energy of joined bodies grows because of rounding alone, however far the solver came. Reason: the
   /// energy is a quadratic function of the share of the impulses that is given. It is least at some share, and the
   /// share given is at most twice that. Preconditions: options are in range, restitution is set, pairs are sorted and
   /// their ids ascend.

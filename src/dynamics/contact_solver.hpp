@@ -76,7 +76,7 @@ struct SolverSpheres {
 
 class ContactSolver {
  public:
-  /// Each impulse is applied to both spheres, equal and opposite: momentum changes by rounding alone. Taking out
+  /// Each impulse is applied to both spheres, equal and opposite: momentum changes because of rounding alone. Taking out
   /// penetration changes displacements, never velocities. A contact with approach speed u above the resting speed ends
   /// with restitution u along its normal if it was given an impulse (rebounds are solved once more over all contacts;
   /// rebound_alone() if it is the only one of its sides).

@@ -35,7 +35,7 @@ struct RigidContact {
 
 class RigidSolver {
  public:
-  /// Each impulse acts on both sides, equal and opposite: momentum changes by rounding alone. Options as in
+  /// Each impulse acts on both sides, equal and opposite: momentum changes because of rounding alone. Options as in
   /// ContactSolver::solve(), but each contact has its own restitution and friction. Contacts are taken in the order
   /// of ids; the result does not depend on the order of contacts or movers. Preconditions: options in range, contacts
   /// name movers. Serial.

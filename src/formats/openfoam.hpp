@@ -27,7 +27,7 @@ inline const std::string unread_field = "field ";
 /// points of that time, and with its fields at cells and points as arrays. Zones of cells become regions. Patches keep
 /// their names; so do zones of faces, for faces that are in no patch. A mesh of one layer between patches of the type
 /// `empty` becomes a mesh of the plane. Cells and faces keep their labels as sources. A field that
-/// cannot be read is left out, which is a warning. Throws InvalidMesh, with file and line, or byte, if the content is
+/// cannot be read is left out with a warning. Throws InvalidMesh, with file and line, or byte, if the content is
 /// not right or cannot be used.
 ParsedMesh parse_openfoam(const std::filesystem::path& path, const ReadOptions& options);
 

@@ -14,7 +14,7 @@
 namespace dartcast {
 namespace {
 
-constexpr double flatness = 1e-9;  // off the plane by rounding, relative to the size of the face
+constexpr double flatness = 1e-9;  // off the plane because of rounding, relative to the size of the face
 constexpr std::size_t pairs_a_face = 200;
 
 using FaceTriangle = std::array<std::uint32_t, 3>;

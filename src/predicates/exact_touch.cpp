@@ -16,7 +16,7 @@ namespace dartcast::detail {
 
 namespace {
 
-// Points in integers: [point][axis], each a form of degree 1. Each axis is scaled by a power of two, which changes no sign.
+// Points in integers: [point][axis], each a form of degree 1. Each axis is scaled by a power of two. This changes no sign.
 using ExactPoints = std::array<std::array<ExactForm, 3>, 4>;
 using PointIndex = std::size_t;
 

@@ -224,7 +224,7 @@ Vec3 representable_near(const Coordinates<N>& coordinates, const std::array<doub
 
 /// A double in the closed simplex close to x, a point at most a few units in the last place outside; nothing if none
 /// is found, as may be in a simplex thinner than a unit in the last place. At an edge of a small angle a, the distance
-/// is of the order of a^(-1/3) units, which is optimal. Cost: some 10 us for each doubling of
+/// is of the order of a^(-1/3) units. This is optimal. Cost: some 10 us for each doubling of
 /// the distance. Precondition: the simplex is positive.
 template <std::size_t N>
 std::optional<Vec3> representable_inside(const std::array<Vec3, N>& v, const Vec3& x) {

@@ -52,7 +52,7 @@ bool positive(const std::array<Vec3, N>& v) {
   return Determinants(v, v[0]).proves_positive() || volume_sign(v) == Sign::positive;
 }
 
-// Whether p, at rest, would be outside the simplex by the motion of the vertices alone. Only for the statistics.
+// Whether p, at rest, would be outside the simplex because of the motion of the vertices alone. Only for the statistics.
 template <std::size_t N>
 bool left_behind(const std::array<Vec3, N>& moved, const Vec3& p) {
   const Determinants d(moved, p);

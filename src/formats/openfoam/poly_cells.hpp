@@ -30,7 +30,7 @@ ParsedMesh mesh_in_plane(const PolyMesh& mesh, std::vector<std::uint32_t>& kept)
 using CornersOfFace = std::function<std::span<const std::uint32_t>(std::uint32_t face)>;
 
 /// Regions from zones of cells; patches from patches and, if a face is in none, from zones of faces. A cell, or face,
-/// in several zones has the first one, which is a warning. So are patches that particles could pass in OpenFOAM.
+/// in several zones has the first one. A warning says so, and also names patches that particles could pass in OpenFOAM.
 void add_zones_and_patches(const PolyMesh& mesh, const CornersOfFace& corners, ParsedMesh& parsed);
 
 }  // namespace dartcast
