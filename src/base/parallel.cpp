@@ -147,9 +147,9 @@ void run_parallel(Chunks& chunks, unsigned threads) {
 }
 #endif
 
-// The stages of one call. A thread claims chunks of its own slice of a stage first, so that it finds most of its data
-// in its own cache, and then those of others that are late. It goes on when all chunks of the stage are done. A chunk
-// is claimed by running threads alone, so nobody waits for a thread that has not come.
+// The stages of one call. A thread first claims chunks of its own slice of a stage. So it finds most of its data in its
+// own cache. Then it claims those of others that are late. It goes on when all chunks of the stage are done. A chunk is
+// claimed by running threads alone, so nobody waits for a thread that has not come.
 class Stages {
  public:
   Stages(std::span<const std::size_t> counts, std::size_t grain, unsigned slices, StageBody body, void* context)

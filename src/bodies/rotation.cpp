@@ -22,9 +22,9 @@ struct Symmetric {
   double xx, xy, xz, yy, yz, zz;
 };
 
-// Leading minors above this share of the norm's powers prove a matrix positive definite, with pivots far above
-// pivot_share (entries are at most 2 norms, so that they are quotients above 2^-23 norms). The rounding of the entries
-// and of the minors, of at most some 50 products of three, is less than 2^-44.
+// Leading minors above this share of the norm's powers prove a matrix positive definite. Its pivots are far above
+// pivot_share: entries are at most 2 norms, so pivots are quotients above 2^-23 norms. The rounding of the entries and
+// of the minors, of at most some 50 products of three, is less than 2^-44.
 constexpr double minor_share = 0x1p-20;
 
 // Solves H w = t by Cholesky's method; nothing if H is not positive definite.

@@ -24,9 +24,9 @@ class ChainSurroundings {
   /// Forgets all. To be called before the walls move or change.
   void clear();
 
-  /// Finds the touches of all segments on their straight way among walls at rest, and returns true; or returns false if a
-  /// cell around is flat, so that walls are not known. Segments that rest are left out. `particles`: the chain at the
-  /// start. Preconditions: as TouchFinder::find().
+  /// Finds the touches of all segments on their straight way among walls at rest. Returns false if a cell around is
+  /// flat: then walls are not known. Segments that rest are left out. `particles`: the chain at the start.
+  /// Preconditions: as TouchFinder::find().
   bool find(const CellComplex& complex, const Particles& particles, std::size_t segments, const SolidMotion& motion,
             std::vector<ElementTouch>& touches);
 

@@ -14,7 +14,7 @@ DARTCAST_BEGIN_KERNEL
 namespace dartcast::detail::DARTCAST_SIMD {
 
 // All simplices of a shape have the same first corner. The points relative to it are differences as orient3d() takes
-// them (dartcast/predicates.hpp), and the bound is that of the whole cell's extent, for a larger m bounds no less.
+// them (dartcast/predicates.hpp). The bound is that of the whole cell's extent, for a larger m bounds no less.
 unsigned proved_positive(const Shape& shape, const std::array<const std::uint32_t*, 4>& vertices,
                          const Vec3* positions) {
   const auto& simplices = shape.simplices();

@@ -20,9 +20,9 @@ namespace dartcast {
 /// Spheres at rest keep this share of the smaller radius between them, and from walls. Rounding and unfinished
 /// iterations then make no contact.
 inline constexpr double resting_gap = 0x1p-10;
-/// Pairs count as near within this share of a radius and the motion of one of them, at most its radius, because an
-/// impulse elsewhere may bring them together within the step. Walls count within this share. Pairs that are further
-/// apart and still meet overlap; the next steps part them.
+/// Pairs count as near within this share of a radius and the motion of one of them, at most its radius. An impulse
+/// elsewhere may bring them together within the step. Walls count within this share. Pairs that are further apart and
+/// still meet overlap; the next steps part them.
 inline constexpr double near_share = 0x1p-4;
 /// The distance within which a sphere counts as near. An impulse may stop or turn it; another sphere that moves along
 /// with it then comes nearer by its own motion.

@@ -47,9 +47,9 @@ NearWall wall_at(const CellView& cell, CellFace face, std::uint16_t triangle, st
   return wall;
 }
 
-// Whether the way from `point`, a place of these vertices, to another corner of a wall that has them all leads nearer to
-// the centre, by more than rounding. If it does not by itself, the same place of another wall is beside it, no farther
-// away than `same_place`.
+// Takes `point`, a place of these vertices, and a wall that has them all. Whether the way to another corner of the wall
+// leads nearer to the centre, by more than rounding. If it does not by itself, the same place of another wall is beside
+// it, no farther away than `same_place`.
 bool goes_nearer(const NearWall& w, const std::array<Vertex, 3>& key, const Vec3& point, const Vec3& centre,
                  double same_place) {
   const auto is_in = [](Vertex v, const std::array<Vertex, 3>& list) {

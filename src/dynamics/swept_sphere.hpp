@@ -1,9 +1,9 @@
 // The first touch of a moving sphere and a moving triangle.
 //
-// No equation is solved: intervals of time are proved free of contact. Let a direction turn from m to n (of lengths
-// at most 1) between two instants a and b. The triangle stays clear of the sphere if all three corners d_i, seen
-// from the centre, are further than the radius along it. The corners are linear in time, so this is a quadratic for
-// each, with Bernstein's coefficients m.d_i(a), (m.d_i(b) + n.d_i(a)) / 2 and n.d_i(b). m and n are the directions to
+// No equation is solved: intervals of time are proved free of contact. Let a direction turn from m to n (of lengths at
+// most 1) between two instants a and b. The triangle stays clear of the sphere if all three corners d_i, seen from the
+// centre, are further than the radius along it. The corners are linear in time, so this is a quadratic for each. Its
+// coefficients in Bernstein's form are m.d_i(a), (m.d_i(b) + n.d_i(a)) / 2 and n.d_i(b). m and n are the directions to
 // the nearest points. Their rounding makes the proof weaker, never wrong, for any triangle. If the proof fails the
 // interval is divided, the earlier part first. If doubles do not decide, double-double does.
 #pragma once

@@ -51,10 +51,10 @@ struct CutAttempt {
 /// Those of the cells that a division and a cut made, and around them, for which ComplexEdit::refused_cells() asks.
 std::vector<Cell> refused_cells(ComplexEdit& edit, const Succession& division, const Succession& cut, bool keep_faces);
 
-/// Divides some cells, and makes a cut. If there are cells that cannot be cut as they are, it makes the cut anew with
-/// these divided first, too: those whose parts commit() would refuse, and those that stayed whole. If that does not
-/// suffice, parts are thin, and vertices that snap bend them: then it makes the cut anew with the smallest snap. All or
-/// nothing. `cut(cells, snap)` returns a CutAttempt. There are at most as many repetitions as cells, and one.
+/// Divides some cells, and makes a cut. Some cells cannot be cut as they are: commit() would refuse their parts, or
+/// they stayed whole. Then it makes the cut anew with these divided first, too. If that does not suffice, parts are
+/// thin, and vertices that snap bend them: then it makes the cut anew with the smallest snap. All or nothing.
+/// `cut(cells, snap)` returns a CutAttempt. There are at most as many repetitions as cells, and one.
 template <class Cut>
 auto cut_with_division(ComplexEdit& edit, std::span<const Cell> cells, double snap, std::vector<Cell> divided,
                        Cut&& cut) {

@@ -11,8 +11,8 @@
 namespace dartcast::detail {
 
 /// Corners, edges from corner to corner, and sides of one or more faces. Faces that may lie in one plane are one side
-/// if they look like a subdivision: a disc with a vertex inside, from which separate paths lead to a vertex on each
-/// edge of the disc. Every other face is a side. Vertices, faces and darts have their numbers in the cell's shape.
+/// if they look like a subdivision. This is a disc with a vertex inside, from which separate paths lead to a vertex on
+/// each edge. Every other face is a side. Vertices, faces and darts have their numbers in the cell's shape.
 class Outline {
  public:
   static constexpr std::uint16_t none = 0xffffU;

@@ -1,8 +1,8 @@
 // Meshes in pieces, each a .vtu file with the numbers of its points and cells in the whole.
 //
-// Writing: patches get the tags 1, 2 ... in the order of their numbers, and all regions a name, so that each piece knows
-// those that it has no face or cell of. Reading: each piece is checked as a mesh of its own; its numbers are checked;
-// then parts are put together by these.
+// Writing: patches get the tags 1, 2 ... in the order of their numbers, and all regions a name. So each piece also
+// knows those of which it has no face or cell. Reading: each piece is checked as a mesh of its own; its numbers are
+// checked; then parts are put together by these.
 #include "formats/mesh_pieces.hpp"
 
 #include <fmt/format.h>

@@ -14,9 +14,9 @@ struct PointFile {
   std::vector<DataArray> arrays;  ///< the points' numeric arrays; none from .csv
 };
 
-/// Reads .vtp (its points and their arrays), .pvtp (those of all its pieces, which are in its folder) or .csv (columns x, y, z by name in the first line; others are ignored).
-/// The option `max_memory` counts, the other does not. Throws Error with file and, for .csv,
-/// line.
+/// Reads .vtp (its points and their arrays) or .pvtp (those of all its pieces, which are in its folder). Or reads .csv:
+/// the columns x, y, z by name in the first line; others are ignored. The option `max_memory` counts, the other does
+/// not. Throws Error with file and, for .csv, line.
 PointFile read_points(const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace dartcast

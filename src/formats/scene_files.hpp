@@ -40,10 +40,10 @@ FrameReader frame_reader(std::vector<std::filesystem::path> files, const MeshDat
 /// exist is checked here. `mesh`: of the scene, read. Throws Error and its kinds, naming the file.
 void read_field_files(FieldScene& field, const MeshData& mesh, const CellsOfScene& cells, const ReadOptions& options);
 
-/// Reads .csv, with the columns x, y, z and, if the file gives them, vx, vy, vz and radius; or .vtp, with the
+/// Reads .csv, with the columns x, y, z and, if the file gives them, vx, vy, vz and radius. Or reads .vtp, with the
 /// points' arrays velocity (of 3 components) and radius. Other arrays of a run's frames are skipped: id, cell, kind,
-/// contacts, held. Only the option `max_memory` has an effect. Throws Error, with the file, if another column or
-/// array is in it, or a value is out of range.
+/// contacts, held. Only the option `max_memory` has an effect. Throws Error, with the file, if another column or array
+/// is in it, or a value is out of range.
 ParticleSeeds read_seeds(const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace dartcast

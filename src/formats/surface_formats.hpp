@@ -1,5 +1,5 @@
-// Readers of surfaces that are neither VTK's nor meshes: Wavefront's .obj, Geomview's .off (ASCII), Stanford's .ply (ASCII, and
-// binary of either byte order) and stereolithography's .stl (ASCII and binary).
+// Readers of surfaces: Wavefront's .obj, Geomview's .off (ASCII), Stanford's .ply (ASCII, or binary of either byte
+// order) and stereolithography's .stl (ASCII or binary).
 #pragma once
 
 #include <string_view>

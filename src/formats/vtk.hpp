@@ -15,15 +15,15 @@
 
 namespace dartcast {
 
-/// Cells of three dimensions become cells: voxels as hexahedra, prisms from VTK's order of corners, which is the
-/// mirror of MeshData's. All their arrays of numbers are kept. The first array of whole numbers among `region`,
+/// Cells of three dimensions become cells: voxels as hexahedra, prisms from VTK's order of corners, which is the mirror
+/// of MeshData's. All their arrays of numbers are kept. The first array of whole numbers among `region`,
 /// `gmsh:physical` and `medit:ref` gives the regions. Triangles, quadrangles and polygons become patch faces by the
 /// cell array options.patch_array. If that is empty, the array `patch` counts, else the array of the regions
 /// (ReadOptions). Names come from arrays of texts, or from the field arrays `region_names` and `patch_names` of
-/// write_vtu(). In a file without cells of three dimensions those of two are the cells, and lines of two points
-/// (poly-lines piece by piece) the faces that patches are made of. Points, and otherwise lines, are left out. The cell
-/// array `free` says which cells are free if the field array free_writer of write_vtu() stands in the file.
-/// `content` is the content of the file, and the path is not used. Throws InvalidMesh.
+/// write_vtu(). In a file without cells of three dimensions those of two are the cells. Lines of two points (poly-lines
+/// piece by piece) are then the faces that patches are made of. Points, and otherwise lines, are left out. The cell
+/// array `free` says which cells are free if the field array free_writer of write_vtu() stands in the file. `content`
+/// is the content of the file, and the path is not used. Throws InvalidMesh.
 ParsedMesh parse_vtu(const std::filesystem::path& path, std::string_view content, const ReadOptions& options = {});
 /// The same of files that are pieces of one mesh, and of a file of several pieces: their points are joined if they
 /// have one place. Cells are left out if their array `vtkGhostType` is not 0.

@@ -81,8 +81,8 @@ Votes count_faces(const MeshData& mesh, std::size_t c) {
   return votes;
 }
 
-/// A closed polygon whose corners all turn left or go straight is weakly convex exactly if its edges turn from
-/// forward to backward, in the order of coordinates, once. Then it is two chains between its first and its last corner,
+/// Take a closed polygon whose corners all turn left or go straight. It is weakly convex exactly if its edges turn once
+/// from forward to backward, in the order of coordinates. Then it is two chains between its first and its last corner,
 /// each bent one way only. More turns are more rounds, or edges that go back on themselves.
 Orientation orient_polygon(const MeshData& mesh, std::size_t c) {
   const auto cell = mesh.cell(c);

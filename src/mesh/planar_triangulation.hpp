@@ -32,8 +32,8 @@ class PlanarTriangulation {
   static constexpr std::uint32_t none = 0xffffffffU;
 
   /// Triangulates all points, in expected n log n. Preconditions: the last four are the corners of a rectangle,
-  /// counterclockwise, and the others lie strictly inside it; no two are equal; all are in the exact range; fewer
-  /// than 2^28. They are not copied.
+  /// counterclockwise, and the others lie strictly inside it. No two are equal; all are in the exact range; there are
+  /// fewer than 2^28. They are not copied.
   explicit PlanarTriangulation(std::span<const Vec3> points);
 
   /// Makes the segment from a to b an edge that is never flipped again, with a name (not `none`). If that cannot be,

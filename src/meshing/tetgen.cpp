@@ -77,10 +77,10 @@ OuterBox outer_box(const ClosedSurfaces& surfaces, double factor) {
   return outer;
 }
 
-// TetGen 1.5 ends with failed assertions on some surfaces, most of all on symmetric ones. So there are
-// three tries. The first asks for well shaped tetrahedra. The second takes any, for surfaces with triangles nearly in one
-// plane. The third moves the sides of the box outwards by less than a hundredth, each by another length, so that no
-// sphere through corners of the box is symmetric.
+// TetGen 1.5 ends with failed assertions on some surfaces, most of all on symmetric ones. So there are three tries. The
+// first asks for well shaped tetrahedra. The second takes any, for surfaces with triangles nearly in one plane. The
+// third moves the sides of the box outwards by less than a hundredth, each by another length. Then no sphere through
+// corners of the box is symmetric.
 Tetrahedra run_tetgen(const ClosedSurfaces& surfaces, const SurfaceScene& scene, std::uint64_t memory) {
   const TemporaryFolder folder;
   const OuterBox box = outer_box(surfaces, scene.box);

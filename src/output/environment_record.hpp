@@ -13,10 +13,10 @@
 
 namespace dartcast {
 
-/// Keeps the cells, regions and arrays of a mesh, and gives them at the environment's positions. Cells also get
-/// `free`, and `source`: the cell's index in the input file, which particles have as `cell`. An array of that name in
-/// the input is replaced. After edits a cell has the values of the input cell that it came from, and a point that an
-/// edit made the weighted mean of those that it was made between.
+/// Keeps the cells, regions and arrays of a mesh, and gives them at the environment's positions. Cells also get `free`,
+/// and `source`: the cell's index in the input file, which particles have as `cell`. An array of that name in the input
+/// is replaced. After edits a cell has the values of the input cell that it came from. A point that an edit made has
+/// the weighted mean of those that it was made between.
 class EnvironmentRecord {
  public:
   /// `mesh`: the environment's, as check_and_repair() left it.

@@ -194,8 +194,8 @@ void ExactTime::halve() {
   }
 }
 
-// The roots of a divisor of f_ are roots of f_, which has one here, and a simple one. f is 0 at it if the divisor
-// changes its sign over the interval.
+// The roots of a divisor of f_ are roots of f_. It has one here, and a simple one. f is 0 at it if the divisor changes
+// its sign over the interval.
 bool ExactTime::is_root_of(const ExactPolynomial& f) const {
   const ExactPolynomial divisor = common_divisor(f_, f);
   return divisor.size() > 1 && value_at(divisor, j_, k_).sign() * value_at(divisor, j_ + 1, k_).sign() < 0;

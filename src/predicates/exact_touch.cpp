@@ -1,7 +1,7 @@
 // The exact part of first_touch(): candidates for the time of the first touch, and a closed test of each by signs alone.
 //
-// Phases: coordinates become integers; the volume of the four points is a cubic, and a touch is at a root of it; if it
-// is 0 throughout, all points stay in one plane and the candidates are the roots of everything that the test asks for.
+// Phases: coordinates become integers; the volume of the four points is a cubic, and a touch is at a root of it. If it
+// is 0 throughout, all points stay in one plane, and the candidates are the roots of everything that the test asks for.
 // The times of contact are a closed set that signs of these forms describe, so its first time is one of the candidates.
 #include <algorithm>
 #include <bit>

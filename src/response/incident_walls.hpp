@@ -34,10 +34,10 @@ class JointWalls {
   std::span<const WallHit> joined_;
 };
 
-/// A vector counts as pointing into no wall if it does so by at most this share of the length of the vector that
-/// the walls were given. A projection meets the walls that it was made on up to some ten roundings of 2^-53 (normals
-/// are of length 1 up to four of them, and creases are made orthogonal twice). 2^-46 is 128 of them. A vector
-/// that exceeds it is never returned, so that the share bounds every result. No decision of a walk depends on it.
+/// A vector counts as pointing into no wall if it does so by at most this share of the length of the vector that the
+/// walls were given. A projection meets the walls that it was made on up to some ten roundings of 2^-53. (Normals are
+/// of length 1 up to four of them, and creases are made orthogonal twice.) 2^-46 is 128 of them. A vector that exceeds
+/// it is never returned, so that the share bounds every result. No decision of a walk depends on it.
 inline constexpr double rounding_share = 0x1p-46;
 
 /// Whether v points into a wall by more than `limit`.

@@ -10,8 +10,9 @@
 
 namespace dartcast {
 
-/// The parts of a simulation register here, and are called in this order: the motion of the vertices; fields, walls near to
-/// spheres; inlets; subdivisions; then the components in the order of a step, and last the simulation's user.
+/// The parts of a simulation register here, and are called in this order: the motion of the vertices; fields, walls
+/// near to spheres; inlets; subdivisions. Then come the components in the order of a step, and last the simulation's
+/// user.
 class Followers {
  public:
   using Follow = std::function<void(const ComplexEditReport& edit, OrphanPolicy orphaned)>;

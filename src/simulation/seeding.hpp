@@ -29,8 +29,8 @@ struct Sample {
   Vec3 position;
 };
 
-/// Sums of sizes in fixed point: of a power of 2 that depends on the largest size and their number alone, so that the
-/// sums do not depend on the order or the grouping. The largest of n sizes has 61 - log2(n) bits or more.
+/// Sums of sizes in fixed point. The power of 2 depends on the largest size and their number alone. So the sums do not
+/// depend on the order or the grouping. The largest of n sizes has 61 - log2(n) bits or more.
 class FixedPointScale {
  public:
   FixedPointScale() = default;

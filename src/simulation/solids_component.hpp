@@ -28,8 +28,8 @@ class SolidsComponent final : public SimulationComponent {
 
   /// Throws Error that names the solid: its shape is a file or has a defect, or its place is refused.
   void add(const SolidScene& scene);
-  /// Moves the environment to these positions, as far as the solids and these partners let it, and all of these with it: the
-  /// solids from the time `begin` on.
+  /// Moves the environment to these positions, as far as the solids and these partners let it. They all move with it:
+  /// the solids from the time `begin` on.
   void move_with(double begin, std::span<const Vec3> positions, std::vector<MovePartner*> partners);
 
   void step(double begin) override;

@@ -1,9 +1,10 @@
 // The ways from simplex to simplex of a shape, for walks that must not branch. A facet within the cell and a triangle
 // of a face are passed by the same operations (tracking/batch/batch_line_walks.inl).
 //
-// A *row* is a simplex and one of its facets: 4 * simplex + facet. Its corners have an order: if the simplex is
-// entered by the facet that of facet_corners, and if it is left by it the opposite one, from the same corner on. So
-// they turn the same way around the direction of travel. A *turn* is a shift of the corners in that order.
+// A *row* is a simplex and one of its facets: 4 * simplex + facet. Its corners have an order. If the simplex is entered
+// by the facet, the order is that of facet_corners. If it is left by it, the order is the opposite one, from the same
+// corner on. So they turn the same way around the direction of travel. A *turn* is a shift of the corners in that
+// order.
 #pragma once
 
 #include <array>

@@ -205,8 +205,8 @@ unsigned zeros_at_end(const CombinatorialMap& map, const Walk& w) {
   return facets_holding<N>(feature, cell, cell.shape().simplices()[w.wall_simplex.simplex]);
 }
 
-/// Where a walk meets a wall: the fraction of the segment, and a bit i for each facet that the point lies on, the one
-/// opposite to corner i of the wall's simplex.
+/// Where a walk meets a wall: the fraction of the segment, and a bit for each facet that the point lies on. Bit i is
+/// for the facet opposite to corner i of the wall's simplex.
 struct ContactGeometry {
   double fraction;
   unsigned zeros;

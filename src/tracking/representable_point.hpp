@@ -190,7 +190,7 @@ class LatticeBasis {
   std::array<Effect, axes> own_;  // what each adds to the effects of those before
 };
 
-/// A double close to the point with coordinates `room`, at most about `distance` away; none of the coordinates is lost
+/// A double close to the point with coordinates `room`, at most about `distance` away. None of the coordinates is lost
 /// if one is found as close as the room allows.
 template <std::size_t N>
 Vec3 representable_near(const Coordinates<N>& coordinates, const std::array<double, N>& room, double distance) {
@@ -222,10 +222,10 @@ Vec3 representable_near(const Coordinates<N>& coordinates, const std::array<doub
   return flushed(found);
 }
 
-/// A double in the closed simplex close to x, a point at most a few units in the last place outside; nothing if none
-/// is found, as may be in a simplex thinner than a unit in the last place. At an edge of a small angle a, the distance
-/// is of the order of a^(-1/3) units. This is optimal. Cost: some 10 us for each doubling of
-/// the distance. Precondition: the simplex is positive.
+/// A double in the closed simplex close to x, a point at most a few units in the last place outside. Nothing if none is
+/// found: the simplex may be thinner than a unit in the last place. At an edge of a small angle a, the distance is of
+/// the order of a^(-1/3) units. This is optimal. Cost: some 10 us for each doubling of the distance. Precondition: the
+/// simplex is positive.
 template <std::size_t N>
 std::optional<Vec3> representable_inside(const std::array<Vec3, N>& v, const Vec3& x) {
   const Coordinates<N> coordinates(v);

@@ -149,9 +149,9 @@ unsigned exit_facet(const std::array<Vec3, N>& v, unsigned behind, const Vec3& p
   return best;
 }
 
-/// The walk of the shifted segment from a simplex that it passes through on: up to the closed simplex that holds q, or to
-/// the first wall facet that q is beyond. `tested`: all facets but the one entered by, because q is strictly on this side
-/// of that one; `tests`: their number.
+/// The walk of the shifted segment, from a simplex that it passes through. It ends at the closed simplex that holds q,
+/// or at the first wall facet that q is beyond. `tested`: all facets but the one entered by, because q is strictly on
+/// this side of that one; `tests`: their number.
 template <class Positions, std::size_t N, class Visitor>
 [[gnu::always_inline]] inline Walk walk_on(const Space<Positions, N>& space, SimplexId start, unsigned tested,
                                            unsigned tests, const Vec3& p, const Vec3& q, Ties<Positions, N>& ties,

@@ -52,8 +52,8 @@ class FoamCase {
     std::size_t components = 1;
     std::vector<double> values;
   };
-  /// The field at the path's time, of a mesh of so many cells and points; none if its class is not one of fields at
-  /// cells or points, or there is no such file.
+  /// The field at the path's time, of a mesh of so many cells and points. None if there is no such file, or its class
+  /// is not one of fields at cells or points.
   [[nodiscard]] std::optional<Field> field(std::string_view name, std::size_t cells, std::size_t points,
                                            std::uint64_t max_memory) const;
   /// The names of all files in the path's time.
