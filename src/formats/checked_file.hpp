@@ -9,6 +9,7 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "dartcast/error.hpp"
@@ -42,6 +43,17 @@ inline MeshFile valid_file(MeshFile file) {
   if (!defect.first.empty())
     places = fmt::format(" ({} in all, the first: {})", defect.count, fmt::join(defect.first, ", "));
   throw InvalidMesh(fmt::format("{}: {}{}", file.report.file, defect.message, places));
+}
+
+/// Calls make(). Puts the file's name before the message of an InvalidMesh that it throws, unless it is there.
+template <class Make>
+auto with_file_name(const std::string& name, Make&& make) {
+  try {
+    return make();
+  } catch (const InvalidMesh& e) {
+    if (std::string_view(e.what()).starts_with(name)) throw;
+    throw InvalidMesh(name + ": " + e.what());
+  }
 }
 
 }  // namespace dartcast

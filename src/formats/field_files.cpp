@@ -6,11 +6,11 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "dartcast/error.hpp"
+#include "formats/checked_file.hpp"
 #include "formats/file_series.hpp"
 #include "formats/openfoam.hpp"
 #include "formats/scene_files.hpp"
@@ -20,17 +20,6 @@
 namespace dartcast {
 
 namespace {
-
-// Calls make(), and puts the file's name before the message of an error unless it is there.
-template <class Make>
-auto with_file_name(const std::filesystem::path& file, Make&& make) {
-  try {
-    return make();
-  } catch (const InvalidMesh& e) {
-    if (std::string_view(e.what()).starts_with(file.string())) throw;
-    throw InvalidMesh(fmt::format("{}: {}", file.string(), e.what()));
-  }
-}
 
 // Reads a field from files of the same mesh as the scene's.
 class FieldFiles {
@@ -47,12 +36,12 @@ class FieldFiles {
 
   /// The place of the first file's array, from then on that of all.
   FieldPlace find_place() {
-    at_ = with_file_name(files_[0], [&] { return field_place(read(0), array_, at_); });
+    at_ = with_file_name(files_[0].string(), [&] { return field_place(read(0), array_, at_); });
     return *at_;
   }
 
   [[nodiscard]] std::vector<Vec3> operator()(std::size_t k) const {
-    return with_file_name(files_[k], [&] {
+    return with_file_name(files_[k].string(), [&] {
       std::vector<Vec3> values = read_values(k);
       const auto bad = std::find_if_not(values.begin(), values.end(), is_finite);
       if (bad != values.end())
@@ -103,7 +92,7 @@ void read_arrays_of_file(FieldScene& field, const MeshData& mesh, const CellsOfS
   const std::filesystem::path file = field.files.front();
   check_exist(field.files);
   const MeshData read = FieldFiles(field, mesh, cells, options, {file}).read(0);
-  field.samples = with_file_name(file, [&] { return field_samples_of(field, read); });
+  field.samples = with_file_name(file.string(), [&] { return field_samples_of(field, read); });
   field.files.clear();
 }
 

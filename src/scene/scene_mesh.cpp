@@ -25,7 +25,7 @@ MeshFile load_source(const MeshSource& source, const ReadOptions& options) {
   if (const auto* surfaces = std::get_if<SurfaceScene>(&source)) return kept_surface_mesh(*surfaces, options);
   MeshFile file{generated_mesh(source), {}};
   file.report = check_and_repair(file.mesh);
-  file.report.file = "the generated mesh";
+  file.report.file = mesh_name(source);
   file.report.format = "generated";
   return file;
 }
@@ -38,6 +38,12 @@ void scale_points(MeshFile& file, double scale) {
 }
 
 }  // namespace
+
+std::string mesh_name(const MeshSource& mesh) {
+  if (const auto* path = std::get_if<std::filesystem::path>(&mesh)) return path->string();
+  if (const auto* surfaces = std::get_if<SurfaceScene>(&mesh)) return surfaces->surfaces.front().file.string();
+  return "the generated mesh";
+}
 
 SceneMesh read_scene_mesh(const EnvironmentScene& scene, const ReadOptions& options, Threads threads) {
   ReadOptions read = options;

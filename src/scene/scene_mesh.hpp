@@ -3,16 +3,15 @@
 
 #include <filesystem>
 #include <string>
-#include <string_view>
 #include <variant>
 #include <vector>
 
 #include "base/parallel.hpp"
-#include "dartcast/error.hpp"
 #include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_data.hpp"
 #include "dartcast/mesh_files.hpp"
 #include "dartcast/scene.hpp"
+#include "formats/checked_file.hpp"
 
 namespace dartcast {
 
@@ -23,20 +22,13 @@ struct SceneMesh {
   std::vector<Finding> warnings;  ///< as of LoadedScene
 };
 
-/// Calls make(). If make() throws InvalidMesh, puts the mesh file's name before the message.
+/// The mesh's name in messages: that of its file.
+std::string mesh_name(const MeshSource& mesh);
+
+/// with_file_name() of a scene's mesh.
 template <class Make>
 auto with_mesh_name(const MeshSource& mesh, Make&& make) {
-  try {
-    return make();
-  } catch (const InvalidMesh& e) {
-    const auto* path = std::get_if<std::filesystem::path>(&mesh);
-    const auto* surfaces = std::get_if<SurfaceScene>(&mesh);
-    const std::string name = path != nullptr       ? path->string()
-                             : surfaces != nullptr ? surfaces->surfaces.front().file.string()
-                                                   : "the generated mesh";
-    if (std::string_view(e.what()).starts_with(name)) throw;
-    throw InvalidMesh(name + ": " + e.what());
-  }
+  return with_file_name(mesh_name(mesh), make);
 }
 
 /// Reads or makes the mesh. Only the options `max_memory` and `kept_mesh` have an effect. Throws InvalidMesh with the mesh
