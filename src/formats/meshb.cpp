@@ -1,6 +1,4 @@
 // Reads Medit's binary .meshb section by section. Each says where the next one begins.
-#include "formats/medit.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 
 #include "dartcast/error.hpp"
 #include "formats/file_text.hpp"
+#include "formats/medit.hpp"
 #include "formats/medit_elements.hpp"
 #include "formats/raw_number.hpp"
 #include "formats/second_order.hpp"
