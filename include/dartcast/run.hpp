@@ -17,6 +17,7 @@
 #include "dartcast/simulation.hpp"
 #include "dartcast/statistics.hpp"
 #include "dartcast/threads.hpp"
+#include "dartcast/vec3.hpp"
 
 namespace dartcast {
 
@@ -49,7 +50,11 @@ struct Summary {
   std::size_t vertices = 0;
   std::size_t wall_faces = 0;
   std::size_t bytes = 0;
-  Finding skipped;                ///< bad cells that were left out
+  Vec3 low, high;               ///< m: of the mesh, before it moves and is edited
+  double smallest_edge = 0.0;   ///< m: of its cells
+  double mean_edge = 0.0;       ///< m: an edge counts once for each of its cells
+  std::uint64_t far_steps = 0;  ///< of particles, over 100 mean edges long; counted in the first step and before frames
+  Finding skipped;              ///< bad cells that were left out
   std::vector<Finding> warnings;  ///< LoadedScene::warnings
 
   SimulationTotals totals;

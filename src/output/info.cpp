@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "dartcast/cell_complex.hpp"
+#include "mesh/mesh_scale.hpp"
 
 namespace dartcast {
 
@@ -137,6 +138,9 @@ MeshInfo mesh_info(const MeshData& mesh, std::string name, Threads threads) {
   info.points = mesh.points.size();
   count_cells(mesh, info);
   find_bounds(mesh.points, info);
+  const MeshScale scale = mesh_scale(mesh, threads);
+  if (scale.edge_count > 0) info.smallest_edge = scale.smallest_edge;
+  info.mean_edge = scale.mean_edge();
   const CellComplex complex(mesh, threads);
   count_walls(complex, info);
   info.shapes = complex.map().shapes().size();
@@ -161,6 +165,8 @@ std::string info_json(const MeshInfo& i) {
                                  {"patch_places", places},
                                  {"free_cells", i.free_cells},
                                  {"bounds", {{i.low.x, i.low.y, i.low.z}, {i.high.x, i.high.y, i.high.z}}},
+                                 {"smallest_edge", i.smallest_edge},
+                                 {"mean_edge", i.mean_edge},
                                  {"wall_faces", i.wall_faces},
                                  {"shapes", i.shapes},
                                  {"simplices", i.simplices},
@@ -188,6 +194,7 @@ std::string info_text(const MeshInfo& i) {
   out += plane ? fmt::format("bounds: ({}, {}) to ({}, {}) in the plane z = 0\n", i.low.x, i.low.y, i.high.x, i.high.y)
                : fmt::format("bounds: ({}, {}, {}) to ({}, {}, {})\n", i.low.x, i.low.y, i.low.z, i.high.x, i.high.y,
                              i.high.z);
+  out += fmt::format("edges of cells: smallest {:.6g}, mean {:.6g}\n", i.smallest_edge, i.mean_edge);
   out += fmt::format("{} shapes, {} simplices, {} interior points\n", i.shapes, i.simplices, i.steiner_points);
   out += arrays_text("point", i.point_arrays) + arrays_text("cell", i.cell_arrays);
   for (const Finding& warning : i.warnings) out += fmt::format("warning: {} {}\n", warning.count, warning.message);

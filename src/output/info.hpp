@@ -42,6 +42,8 @@ struct MeshInfo {
   std::uint64_t simplices = 0;
   std::size_t steiner_points = 0;  ///< added if a cell needs one
   Vec3 low, high;                  ///< of the points
+  double smallest_edge = 0.0;      ///< of the cells
+  double mean_edge = 0.0;          ///< an edge counts once for each of its cells
   std::size_t bytes = 0;           ///< of the map, its positions and tables
   std::vector<ArrayInfo> point_arrays;
   std::vector<ArrayInfo> cell_arrays;

@@ -9,10 +9,12 @@
 
 #include "base/are_several.hpp"
 #include "base/parallel.hpp"
+#include "base/reduced.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/replay.hpp"
 #include "dartcast/run.hpp"
 #include "dartcast/scene_file.hpp"
+#include "mesh/mesh_scale.hpp"
 #include "output/run_files.hpp"
 #include "output/run_output.hpp"
 #include "scene/scene_mesh.hpp"
@@ -42,6 +44,22 @@ void describe(const Environment& environment, Summary& summary) {
   summary.wall_faces = map.wall_face_count();
   summary.bytes = environment.complex().bytes();
   summary.patch_names = map.patch_names();
+}
+
+// Before the mesh moves. Where ranks have parts of it, each cell counts once.
+void describe_mesh(const Scene& scene, const RunOptions& options, Summary& summary) {
+  MeshScale scale;
+  if (const auto* part = std::get_if<MeshPart>(&scene.environment.mesh)) {
+    scale = reduced(options.ranks, mesh_scale(part->mesh, options.threads, part->owners, part->part),
+                    [](MeshScale& sum, const MeshScale& other) { sum += other; });
+  } else {
+    scale = mesh_scale(std::get<MeshData>(scene.environment.mesh), options.threads);
+  }
+  if (scale.edge_count == 0) return;
+  summary.low = scale.low;
+  summary.high = scale.high;
+  summary.smallest_edge = scale.smallest_edge;
+  summary.mean_edge = scale.mean_edge();
 }
 
 // If ranks have parts of the environment: the cells of each count once, and so does what belongs to the lowest of them.
@@ -103,6 +121,7 @@ class Run {
       const SimulationStep& step = simulation_.step();
       summary_.held = step.report.held.size();
       if (summary_.audit) *summary_.audit += simulation_.audit();
+      count_far_steps();
       output_.add_step(simulation_, step);
       output_.add_frame(simulation_, simulation_.steps() == steps_);
       cancel_unless(goes_on(!progress || progress(simulation_.steps(), steps_)));
@@ -118,6 +137,13 @@ class Run {
     return stops == 0;
   }
 
+  // Steps so long that the scale of the mesh may be wrong. A pass over the velocities takes time: not in each step.
+  void count_far_steps() {
+    if (simulation_.steps() > 1 && !output_.on_schedule(simulation_.steps())) return;
+    const double far = 100.0 * summary_.mean_edge / simulation_.options().dt;
+    for (const Vec3& v : simulation_.velocities()) summary_.far_steps += dot(v, v) > far * far ? 1 : 0;
+  }
+
   void cancel_unless(bool goes_on) {
     if (goes_on || simulation_.steps() == steps_) return;
     summary_.cancelled = true;
@@ -127,6 +153,7 @@ class Run {
   void finish() {
     summary_.steps = simulation_.steps();
     summary_.totals = simulation_.totals_of_all();
+    sum_over(simulation_.options().ranks, {&summary_.far_steps, 1});
     summary_.seconds_solids = simulation_.seconds_solids();
     summary_.alive = simulation_.alive();
     if (summary_.surgery) {
@@ -220,6 +247,7 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   const std::uint64_t steps = options.steps.value_or(scene.motion.steps);
   RunOutput output(loaded.scene, options, summary);
   output.find_checkpoint(steps);
+  describe_mesh(loaded.scene, options, summary);
   summary.seconds_load = load.seconds();
   const Stopwatch locate;
   const std::unique_ptr<Simulation> simulation =

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,6 +41,25 @@ class SummaryTable {
   std::string subject_;
 };
 
+// The extent of the mesh, which is in metres, and what looks as if it were in another unit.
+void add_scale(SummaryTable& table, const Summary& s) {
+  table.add("environment",
+            {fmt::format("from ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) m", s.low.x, s.low.y, s.low.z,
+                         s.high.x, s.high.y, s.high.z),
+             fmt::format("edges of cells: smallest {:.3g} m, mean {:.3g} m", s.smallest_edge, s.mean_edge)});
+  const Vec3 sides = s.high - s.low;
+  const double size = std::max({sides.x, sides.y, sides.z});
+  if (s.mean_edge > 0.0 && (size > 1000.0 || size < 1e-5))
+    table.add("environment",
+              fmt::format("warning: the mesh is {:.3g} m across: does its file have metres? The key scale "
+                          "multiplies its lengths",
+                          size));
+  if (s.far_steps > 0)
+    table.add("environment", fmt::format("warning: {} steps of particles were longer than 100 cells: are scale, dt and "
+                                         "velocities right?",
+                                         grouped(s.far_steps)));
+}
+
 void add_scene(SummaryTable& table, const Summary& s) {
   std::string with = fmt::format("{} thread{}", s.threads, s.threads == 1 ? "" : "s");
   if (s.ranks > 1) with = fmt::format("{} processes of {}", s.ranks, with);
@@ -48,6 +68,7 @@ void add_scene(SummaryTable& table, const Summary& s) {
   table.add("environment", {fmt::format("{} cells ({} free)", grouped(s.cells), grouped(s.free_cells)),
                             fmt::format("{} wall faces", grouped(s.wall_faces)),
                             fmt::format("{:.1f} MB", static_cast<double>(s.bytes) / 1e6)});
+  add_scale(table, s);
   if (s.skipped.count > 0)
     table.add("environment", fmt::format("{} {}; the first: {}", grouped(s.skipped.count), s.skipped.message,
                                          fmt::join(s.skipped.first, ", ")));
@@ -89,7 +110,7 @@ void add_cost(SummaryTable& table, const Summary& s) {
     if (counts_tests(c))
       step = {fmt::format("{:.2f} orientation tests", ratio(c.orientation.tests, c.particle_steps)),
               fmt::format("forecast kept in {:.1f} %", 100.0 * ratio(c.forecast_kept, c.particle_steps))};
-    step.push_back(fmt::format("{:.0f} ns a particle", ns_per_particle_step(s)));
+    step.push_back(fmt::format("{:.0f} ns a particle in all", ns_per_particle_step(s)));
     table.add("a step", step);
   }
   std::vector<std::string> parts;
