@@ -12,6 +12,8 @@ import textwrap
 DOCS = pathlib.Path(__file__).resolve().parent.parent / "docs"
 STATUS = ("Each verb ends with 0 where all is well, 1 where something is wrong with its input, 2 where it was called in a "
           "wrong way, and 130 after Ctrl-C. Errors go to the standard error stream.")
+COMPLETION = "Bash and zsh complete verbs and options of an installed command. For any other, a line turns this on:"
+TURN_ON = "source <(dartcast completion bash)"
 
 
 def printed(*words: str) -> str:
@@ -27,7 +29,7 @@ def verbs_of(command: str) -> dict[str, tuple[str, str]]:
 
 def page_of(verbs: dict[str, tuple[str, str]]) -> str:
     status = "\n".join(textwrap.wrap(f"`dartcast VERB ...`. {STATUS}", 100))
-    parts = [f"# The command\n\n{status}\n\n"
+    parts = [f"# The command\n\n{status}\n\n{COMPLETION}\n\n```\n{TURN_ON}\n```\n\n"
              "`tools/make_command_page.py` has made this page from `dartcast VERB --help`.\n"]
     for verb, (first, rest) in verbs.items():
         parts.append(f"## {verb}\n\n{first}\n\n```text\n{rest}\n```\n")
@@ -43,7 +45,7 @@ def roff(text: str) -> str:
 def manual_of(verbs: dict[str, tuple[str, str]], version: str) -> str:
     parts = [f'.TH DARTCAST 1 "" "dartcast {version}" "User Commands"', ".SH NAME",
              "dartcast \\- carries particles through deforming meshes, exactly", ".SH SYNOPSIS", ".B dartcast",
-             ".I VERB", "[...]", ".SH DESCRIPTION", roff(STATUS), ".SH VERBS"]
+             ".I VERB", "[...]", ".SH DESCRIPTION", roff(STATUS), ".PP", roff(COMPLETION), ".PP", ".nf", roff(TURN_ON), ".fi", ".SH VERBS"]
     for verb, (first, rest) in verbs.items():
         parts += [f".SS {verb}", roff(first), ".PP", ".nf", roff(rest), ".fi"]
     parts += [".SH SEE ALSO", "The scenes in /usr/share/doc/dartcast/examples. A run leaves report.html, which opens in "

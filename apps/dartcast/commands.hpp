@@ -23,5 +23,8 @@ void add_plan(CLI::App& app, int& status);
 void add_lagrangian(CLI::App& app, int& status);
 void add_trace(CLI::App& app, int& status);
 void add_replay(CLI::App& app, int& status);
+/// These two know the verbs that were added before them.
+void add_completion(CLI::App& app, int& status);
+void add_help(CLI::App& app, int& status);
 
 }  // namespace dartcast::app

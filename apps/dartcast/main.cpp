@@ -1,5 +1,6 @@
 // The command dartcast: its verbs.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cstdio>
 
@@ -28,11 +29,11 @@ void add_bench(CLI::App& app, int& status) {
 int main(int argc, char** argv) {
   namespace verbs = dartcast::app;
   CLI::App app("Carries particles through deforming meshes, exactly.", "dartcast");
-  app.set_version_flag("--version", dartcast::version());
+  app.set_version_flag("-V,--version", dartcast::version(), "Print the version and exit");
   app.require_subcommand(0, 1);
   app.parse_complete_callback([&app] {
     if (app.get_subcommands().empty())
-      throw CLI::RequiredError("one of run, report, view, check, info, convert, trace");
+      throw CLI::RequiredError(fmt::format("one of {}", fmt::join(verbs::verbs_of(app), ", ")));
   });
   int status = verbs::done;
   verbs::add_run(app, status);
@@ -48,5 +49,7 @@ int main(int argc, char** argv) {
   verbs::add_trace(app, status);
   verbs::add_replay(app, status);
   verbs::add_bench(app, status);
+  verbs::add_completion(app, status);
+  verbs::add_help(app, status);
   return verbs::run_program(app, argc, argv, status);
 }

@@ -28,8 +28,9 @@ std::uint64_t parse_memory(const std::string& text) {
 
 void add_max_memory(CLI::App& verb, std::uint64_t& bytes) {
   verb.add_option_function<std::string>(
-      "--max-memory", [&bytes](const std::string& text) { bytes = parse_memory(text); },
-      "memory that reading may take, as 512M or 2G (half of the machine's); a file that may need more is refused");
+          "--max-memory", [&bytes](const std::string& text) { bytes = parse_memory(text); },
+          "memory that reading may take, as 512M or 2G (half of the machine's); a file that may need more is refused")
+      ->type_name("SIZE");
 }
 
 }  // namespace dartcast::app

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,8 +12,10 @@
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_files.hpp"
 #include "dartcast/scene.hpp"
+#include "limits.hpp"
 #include "max_memory.hpp"
 #include "output/mesh_report_text.hpp"
+#include "terminal.hpp"
 
 namespace dartcast::app {
 
@@ -24,6 +25,7 @@ struct MeshArguments {
   std::vector<std::string> surfaces;
   std::string inside = "inside";
   std::string out;
+  std::string with;
   SurfaceScene scene;
   std::uint64_t max_memory = 0;
 };
@@ -47,8 +49,11 @@ void check_ending(const std::string& file) {
 int mesh(const MeshArguments& a) {
   check_ending(a.out);
   SurfaceScene scene = a.scene;
+  if (!a.with.empty()) scene.mesher = a.with == "gmsh" ? Mesher::gmsh : Mesher::tetgen;
   for (const std::string& text : a.surfaces) scene.surfaces.push_back(named_surface(text, a.inside));
-  const MeshFile made = mesh_surfaces(scene, {{}, a.max_memory, false, {}});
+  const MeshFile made = while_waiting("meshing " + scene.surfaces.front().file.string(), true, [&] {
+    return mesh_surfaces(scene, {{}, a.max_memory, false, {}});
+  });
   fmt::print("{}", report_text(made.report));
   if (!made.report.valid()) return failed;
   write_noting_loss(made.mesh, a.out);
@@ -64,22 +69,32 @@ void add_mesh(CLI::App& app, int& status) {
   verb->add_option(
           "SURFACE", a->surfaces,
           fmt::format("closed surfaces: {}; NAME=FILE names the region inside", fmt::join(surface_endings(), " ")))
+      ->type_name("FILE")
       ->required();
   verb->add_option("-o,--output", a->out, fmt::format("the mesh to write: {}", fmt::join(writable_mesh_endings(), " ")))
+      ->type_name("FILE")
       ->required();
   verb->add_option("--box", a->scene.box, "edges of the box around, as a multiple of the surfaces' own")
+      ->type_name("N")
       ->capture_default_str();
   verb->add_option("--size", a->scene.size, "length of the tetrahedra's edges, about; 0: as the mesher likes")
+      ->type_name("LENGTH")
       ->capture_default_str();
-  verb->add_option("--inside", a->inside, "the region inside a surface without a name")->capture_default_str();
-  verb->add_option("--outside", a->scene.outside, "the region up to the box")->capture_default_str();
+  verb->add_option("--inside", a->inside, "the region inside a surface without a name")
+      ->type_name("NAME")
+      ->capture_default_str();
+  verb->add_option("--outside", a->scene.outside, "the region up to the box")->type_name("NAME")->capture_default_str();
   verb->add_flag("--cap", a->scene.cap, "close flat holes: patches inlet, outlet ...");
   verb->add_option("--angle", a->scene.angle, "degrees: sharper edges divide a surface without groups into patches")
+      ->type_name("N")
       ->capture_default_str();
-  verb->add_option("--with", a->scene.mesher, "tetgen or gmsh; without it the first one that can")
-      ->transform(
-          CLI::CheckedTransformer(std::map<std::string, Mesher>{{"tetgen", Mesher::tetgen}, {"gmsh", Mesher::gmsh}}));
-  verb->add_option("--seconds", a->scene.seconds, "the mesher is stopped after this time")->capture_default_str();
+  const std::vector<std::string> meshers = {"tetgen", "gmsh"};
+  verb->add_option("--with", a->with, "the program that makes the tetrahedra; without it the first one that can")
+      ->type_name(alternatives(meshers))
+      ->check(one_of(meshers));
+  verb->add_option("--seconds", a->scene.seconds, "the mesher is stopped after this time")
+      ->type_name("SECONDS")
+      ->capture_default_str();
   add_max_memory(*verb, a->max_memory);
   verb->callback([a, &status] { status = mesh(*a); });
 }

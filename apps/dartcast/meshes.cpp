@@ -17,13 +17,15 @@
 #include "output/info.hpp"
 #include "output/mesh_report_text.hpp"
 #include "scene/scene_mesh.hpp"
+#include "terminal.hpp"
 
 namespace dartcast::app {
 
 namespace {
 
 int check(const std::string& mesh, bool skip_bad_cells, bool json, const ReadOptions& options) {
-  const MeshReport report = check_mesh(mesh, {}, options, skip_bad_cells).report;
+  const MeshReport report =
+      while_waiting("checking " + mesh, !json, [&] { return check_mesh(mesh, {}, options, skip_bad_cells).report; });
   fmt::print("{}{}", json ? report_json(report) : report_text(report), json ? "\n" : "");
   return report.valid() ? done : failed;
 }
@@ -33,18 +35,20 @@ int info(const std::string& path, bool json, const ReadOptions& options) {
   scene.mesh = std::filesystem::path(path);
   if (std::filesystem::path(path).extension() == ".toml") scene = read_scene(path).environment;
   scene.linearise = scene.linearise || options.linearise;
-  const MeshInfo result = with_mesh_name(scene.mesh, [&] {
-    SceneMesh loaded = load_scene_mesh(scene, options);
-    MeshInfo of_mesh = mesh_info(loaded.mesh, path);
-    of_mesh.warnings = std::move(loaded.warnings);
-    return of_mesh;
+  const MeshInfo result = while_waiting("loading " + path, !json, [&] {
+    return with_mesh_name(scene.mesh, [&] {
+      SceneMesh loaded = load_scene_mesh(scene, options);
+      MeshInfo of_mesh = mesh_info(loaded.mesh, path);
+      of_mesh.warnings = std::move(loaded.warnings);
+      return of_mesh;
+    });
   });
   fmt::print("{}{}", json ? info_json(result) : info_text(result), json ? "\n" : "");
   return done;
 }
 
 int convert(const std::string& in, const std::string& out, const ReadOptions& options) {
-  write_noting_loss(read_valid_mesh(in, options).mesh, out);
+  write_noting_loss(while_waiting("loading " + in, true, [&] { return read_valid_mesh(in, options).mesh; }), out);
   return done;
 }
 
@@ -71,6 +75,7 @@ void add_check(CLI::App& app, int& status) {
   verb->add_option("MESH", *mesh,
                    fmt::format("a mesh: {}, or the folder of an OpenFOAM case; or a surface: {}",
                                fmt::join(mesh_endings(), " "), fmt::join(surface_endings(), " ")))
+      ->type_name("FILE")
       ->required();
   const auto skip = std::make_shared<bool>(false);
   verb->add_flag("--skip-bad-cells", *skip, "with this option of dartcast run: bad cells are left out, and a warning");
@@ -84,7 +89,7 @@ void add_info(CLI::App& app, int& status) {
   const auto path = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
   CLI::App* verb = app.add_subcommand("info", "Print counts, bounds, shapes and memory.");
-  verb->add_option("MESH_OR_SCENE", *path, "a mesh file, or a scene (.toml)")->required();
+  verb->add_option("MESH_OR_SCENE", *path, "a mesh file, or a scene (.toml)")->required()->type_name("FILE");
   verb->add_flag("--json", *json, "print one JSON object, and nothing else");
   const auto options = std::make_shared<ReadOptions>();
   add_read_options(*verb, *options);
@@ -95,8 +100,9 @@ void add_convert(CLI::App& app, int& status) {
   const auto in = std::make_shared<std::string>();
   const auto out = std::make_shared<std::string>();
   CLI::App* verb = app.add_subcommand("convert", "Write a mesh in another format, given by the ending.");
-  verb->add_option("IN", *in, "the mesh to read")->required();
+  verb->add_option("IN", *in, "the mesh to read")->required()->type_name("FILE");
   verb->add_option("OUT", *out, fmt::format("the file to write: {}", fmt::join(writable_mesh_endings(), " ")))
+      ->type_name("FILE")
       ->required();
   const auto options = std::make_shared<ReadOptions>();
   add_read_options(*verb, *options);
@@ -108,9 +114,11 @@ void add_lagrangian(CLI::App& app, int& status) {
   const auto target = std::make_shared<std::string>();
   const auto cloud = std::make_shared<std::string>("particles");
   CLI::App* verb = app.add_subcommand("lagrangian", "Write a run's particles into an OpenFOAM case.");
-  verb->add_option("RUN", *run, "the folder of a run in the case's mesh")->required();
-  verb->add_option("CASE", *target, "the case: frames go to its folders TIME/lagrangian")->required();
-  verb->add_option("--cloud", *cloud, "the name of the cloud")->capture_default_str();
+  verb->add_option("RUN", *run, "the folder of a run in the case's mesh")->required()->type_name("FOLDER");
+  verb->add_option("CASE", *target, "the case: frames go to its folders TIME/lagrangian")
+      ->required()
+      ->type_name("FOLDER");
+  verb->add_option("--cloud", *cloud, "the name of the cloud")->type_name("NAME")->capture_default_str();
   verb->callback([run, target, cloud, &status] {
     fmt::print("{} frames in {}/*/lagrangian/{}\n", write_lagrangian(*run, *target, *cloud), *target, *cloud);
     status = done;

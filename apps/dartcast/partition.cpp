@@ -9,6 +9,7 @@
 #include "dartcast/mesh_files.hpp"
 #include "limits.hpp"
 #include "max_memory.hpp"
+#include "terminal.hpp"
 
 namespace dartcast::app {
 
@@ -24,7 +25,7 @@ struct PartitionArguments {
 };
 
 int partition(const PartitionArguments& a) {
-  const MeshData mesh = read_valid_mesh(a.mesh, a.read).mesh;
+  const MeshData mesh = while_waiting("loading " + a.mesh, true, [&] { return read_valid_mesh(a.mesh, a.read).mesh; });
   write_mesh_parts(mesh, a.parts, a.out);
   fmt::print("{}: {} cells in {} pieces\n", a.out, mesh.cell_count(), a.parts);
   return done;
@@ -35,11 +36,13 @@ int partition(const PartitionArguments& a) {
 void add_partition(CLI::App& app, int& status) {
   const auto a = std::make_shared<PartitionArguments>();
   CLI::App* verb = app.add_subcommand("partition", "Write a mesh in pieces, for runs with --partition cells.");
-  verb->add_option("MESH", a->mesh, "the mesh to read")->required();
-  verb->add_option("-n,--parts", a->parts, "the number of pieces: as many as processes, or more")
+  verb->add_option("MESH", a->mesh, "the mesh to read")->required()->type_name("FILE");
+  verb->add_option("-n,--parts", a->parts, "the number of pieces: 1 to 65536, as many as processes, or more")
+      ->type_name("N")
       ->required()
       ->transform(whole_number(1, max_parts));
   verb->add_option("-o,--output", a->out, "the .pvtu file to write; the pieces, .vtu files, stand beside it")
+      ->type_name("FILE")
       ->required();
   verb->add_flag("--linearise", a->read.linearise, "take the corners of cells of second order");
   add_max_memory(*verb, a->read.max_memory);

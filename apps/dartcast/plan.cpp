@@ -16,6 +16,7 @@
 #include "max_memory.hpp"
 #include "output/plan_text.hpp"
 #include "scene/scene_mesh.hpp"
+#include "terminal.hpp"
 
 namespace dartcast::app {
 
@@ -43,6 +44,7 @@ double particles_of(const Scene& scene) {
 }
 
 int plan(PlanArguments a, bool has_particles) {
+  WaitingLine waiting("planning for " + a.path, !a.json);
   MeshData mesh;
   if (std::filesystem::path(a.path).extension() == ".toml") {
     Scene scene = load_scene_files(read_scene(a.path), a.read).scene;
@@ -53,6 +55,7 @@ int plan(PlanArguments a, bool has_particles) {
     mesh = read_valid_mesh(a.path, a.read).mesh;
   }
   const RunPlan result = plan_run(mesh, a.options);
+  waiting.end();
   fmt::print("{}", a.json ? plan_json(result) + "\n" : plan_text(result));
   return done;
 }
@@ -63,23 +66,31 @@ void add_plan(CLI::App& app, int& status) {
   const auto a = std::make_shared<PlanArguments>();
   PlanOptions& o = a->options;
   CLI::App* verb = app.add_subcommand("plan", "Say what a run with --partition cells would take on many processes.");
-  verb->add_option("MESH_OR_SCENE", a->path, "a mesh file, or a scene (.toml)")->required();
-  verb->add_option("--ranks", o.ranks, "the number of processes")->required()->transform(whole_number(1, max_ranks));
+  verb->add_option("MESH_OR_SCENE", a->path, "a mesh file, or a scene (.toml)")->required()->type_name("FILE");
+  verb->add_option("--ranks", o.ranks, "the number of processes, 1 to 65536")
+      ->required()
+      ->type_name("N")
+      ->transform(whole_number(1, max_ranks));
   CLI::Option* particles =
       verb->add_option("--particles", o.particles, "of each process, in the mean (100000; a scene's own)")
-          ->check(CLI::Range(0.0, 1e12));
+          ->type_name("N")
+          ->check(number(0.0, 1e12));
   verb->add_option("--cells", o.cells,
                    "of each process, in the mean: as in a larger mesh of this form (as the mesh has)")
-      ->check(CLI::Range(0.0, 1e12));
+      ->type_name("N")
+      ->check(number(0.0, 1e12));
   verb->add_option("--step", o.step, "the way of a particle in a step, in edges of a cell")
-      ->check(CLI::Range(0.0, 1.0))
+      ->type_name("N")
+      ->check(number(0.0, 1.0))
       ->capture_default_str();
   verb->add_flag("--moving", o.deforms, "the points of the mesh move in every step");
   verb->add_option("--latency", o.latency, "of the network, in seconds")
-      ->check(CLI::Range(0.0, 1.0))
+      ->type_name("N")
+      ->check(number(0.0, 1.0))
       ->capture_default_str();
   verb->add_option("--bandwidth", o.bandwidth, "of the network, in bytes a second")
-      ->check(CLI::Range(1.0, 1e15))
+      ->type_name("N")
+      ->check(number(1.0, 1e15))
       ->capture_default_str();
   verb->add_flag("--json", a->json, "print one JSON object, and nothing else");
   add_max_memory(*verb, a->read.max_memory);

@@ -37,7 +37,7 @@ int replay_file(const std::string& file) {
 void add_replay(CLI::App& app, int& status) {
   const auto file = std::make_shared<std::string>();
   CLI::App* verb = app.add_subcommand("replay", "Take a step again that went wrong in a run, alone, and check it.");
-  verb->add_option("FILE", *file, "the replay.json that a run has left")->required();
+  verb->add_option("FILE", *file, "the replay.json that a run has left")->required()->type_name("FILE");
   verb->callback([file, &status] { status = replay_file(*file); });
 }
 

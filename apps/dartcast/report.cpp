@@ -84,10 +84,13 @@ void add_report(CLI::App& app, int& status) {
   const auto a = std::make_shared<ReportArguments>();
   CLI::App* verb =
       app.add_subcommand("report", "Make a run's report.html again, with more or fewer particles and frames.");
-  verb->add_option("RUN", a->run, "the output folder of a run")->required();
+  verb->add_option("RUN", a->run, "the output folder of a run")->required()->type_name("FOLDER");
   verb->add_option("--particles", a->particles, "show at most so many particles (10000)")
+      ->type_name("N")
       ->transform(whole_number(1, std::numeric_limits<std::uint32_t>::max()));
-  verb->add_option("--frames", a->frames, "show at most so many frames (100)")->transform(whole_number(1, 65535));
+  verb->add_option("--frames", a->frames, "show at most so many frames, 1 to 65535 (100)")
+      ->type_name("N")
+      ->transform(whole_number(1, 65535));
   verb->add_flag("--json", a->json, "print what was made as one JSON object, and nothing else");
   verb->callback([a, &status] { status = report(*a); });
 }
@@ -95,7 +98,7 @@ void add_report(CLI::App& app, int& status) {
 void add_view(CLI::App& app, int& status) {
   const auto run = std::make_shared<std::string>();
   CLI::App* verb = app.add_subcommand("view", "Open a run's report; where there is no display, print its path.");
-  verb->add_option("RUN", *run, "the output folder of a run")->required();
+  verb->add_option("RUN", *run, "the output folder of a run")->required()->type_name("FOLDER");
   verb->callback([run, &status] { status = view(*run); });
 }
 

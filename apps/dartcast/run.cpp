@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
+#include <vector>
 
 #include "commands.hpp"
 #include "dartcast/scene_file.hpp"
@@ -86,6 +89,12 @@ int status_of(const RunArguments& a, const Summary& summary, const std::string& 
   return interrupted + Interruption::signal();
 }
 
+std::string loading_text(const MeshSource& mesh) {
+  if (const auto* file = std::get_if<std::filesystem::path>(&mesh)) return "loading " + file->filename().string();
+  const auto* made = std::get_if<SurfaceScene>(&mesh);
+  return made == nullptr ? "making the mesh" : "meshing " + made->surfaces.front().file.filename().string();
+}
+
 // Where ranks share the run, the first speaks for all.
 int run(const RunArguments& a, Ranks* ranks) {
   const Scene scene = read_scene(a.scene);
@@ -102,13 +111,16 @@ int run(const RunArguments& a, Ranks* ranks) {
   options.max_memory = a.max_memory;
   const bool speaks = ranks == nullptr || ranks->rank() == 0;
   const bool shows_progress = speaks && !a.quiet && !a.json && is_terminal(stderr);
+  WaitingLine waiting(loading_text(scene.environment.mesh), shows_progress);
   ProgressLine line;
   const Interruption interruption;
   const Summary summary = run_scene(scene, options, [&](std::uint64_t step, std::uint64_t all) {
+    waiting.end();
     if (shows_progress) line.show(step, all);
     if (step == all) Interruption::last_step();
     return !Interruption::asked_after_step();
   });
+  waiting.end();
   line.clear();
   if (!speaks) return done;
   report(a, summary, options.folder.string());
@@ -119,14 +131,18 @@ int run(const RunArguments& a, Ranks* ranks) {
 
 void add_run(CLI::App& app, int& status) {
   const auto a = std::make_shared<RunArguments>();
+  const std::vector<std::string> partitions = {"particles", "cells"};
   CLI::App* verb = app.add_subcommand("run", "Run a scene; writes a folder that ParaView opens.");
-  verb->add_option("SCENE", a->scene, "a scene in TOML")->required();
-  verb->add_option("-o,--output", a->folder, "folder for the output (the scene's name with -out)");
-  verb->add_option("-j,--threads", a->threads, "threads (all the machine has)")
+  verb->add_option("SCENE", a->scene, "a scene in TOML")->required()->type_name("FILE");
+  verb->add_option("-o,--output", a->folder, "folder for the output (the scene's name with -out)")->type_name("FOLDER");
+  verb->add_option("-j,--threads", a->threads, fmt::format("threads, 1 to {} (all the machine has)", max_threads()))
+      ->type_name("N")
       ->transform(whole_number(1, max_threads()));
   verb->add_option("--steps", a->steps, "number of steps, instead of the scene's")
+      ->type_name("N")
       ->transform(whole_number(0, max_steps));
   verb->add_option("--seed", a->seed, "seed for all that is random, instead of the scene's")
+      ->type_name("N")
       ->transform(whole_number(0, max_seed));
   verb->add_flag("--audit", a->audit, "check each particle after each step in exact arithmetic (slow)");
   verb->add_flag("--resume", a->resume, "go on where an earlier run in the folder was cut off, or to more --steps");
@@ -134,7 +150,8 @@ void add_run(CLI::App& app, int& status) {
                  "block flat, inverted and indivisible cells: they are left out, and their faces are walls");
   verb->add_option("--partition", a->partition,
                    "under mpirun: each process has some of the particles, or some of the cells (particles)")
-      ->check(CLI::IsMember({"particles", "cells"}));
+      ->type_name(alternatives(partitions))
+      ->check(one_of(partitions));
   add_max_memory(*verb, a->max_memory);
   auto* quiet = verb->add_flag("-q,--quiet", a->quiet, "print nothing but errors");
   verb->add_flag("-v,--verbose", a->verbose, "print more")->excludes(quiet);

@@ -7,7 +7,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <condition_variable>
 #include <cstdlib>
+#include <mutex>
+#include <stop_token>
 #include <string_view>
 
 namespace dartcast::app {
@@ -94,5 +97,26 @@ void ProgressLine::clear() {
   std::fflush(stderr);
   is_shown_ = false;
 }
+
+WaitingLine::WaitingLine(const std::string& what, bool shows) {
+  if (!shows || !is_terminal(stderr)) return;
+  thread_ = std::jthread([what](const std::stop_token& stop) {
+    const auto start = std::chrono::steady_clock::now();
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    std::condition_variable_any end;
+    bool is_shown = false;
+    while (!stop.stop_requested()) {
+      const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(std::chrono::steady_clock::now() - start);
+      is_shown = seconds.count() > 0;
+      if (is_shown) fmt::print(stderr, "\r{}: {}\x1b[K", what, duration(static_cast<double>(seconds.count())));
+      std::fflush(stderr);
+      end.wait_for(lock, stop, std::chrono::milliseconds(200), [] { return false; });
+    }
+    if (is_shown) fmt::print(stderr, "\r\x1b[K");
+  });
+}
+
+void WaitingLine::end() { thread_ = std::jthread(); }
 
 }  // namespace dartcast::app

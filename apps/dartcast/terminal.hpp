@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <string>
+#include <thread>
 
 namespace dartcast::app {
 
@@ -34,6 +35,26 @@ class ProgressLine {
   std::uint64_t first_ = 0;
   bool is_shown_ = false;
 };
+
+/// A line on stderr for work whose end is not known: while it lives, it says what is waited for and since when. It comes
+/// after a second, and on a terminal only.
+class WaitingLine {
+ public:
+  /// `shows`: whether there is a line at all.
+  WaitingLine(const std::string& what, bool shows);
+  /// Removes the line, so that other text takes its place.
+  void end();
+
+ private:
+  std::jthread thread_;
+};
+
+/// The result of make(). While it is made, there is a WaitingLine.
+template <class Make>
+auto while_waiting(const std::string& what, bool shows, Make&& make) {
+  const WaitingLine line(what, shows);
+  return make();
+}
 
 /// The text of a line of progress, at most `width` characters, with a bar where there is room. `step` of `all` steps are
 /// done; `measured` of them took `seconds`.

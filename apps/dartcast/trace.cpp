@@ -18,6 +18,7 @@
 #include "dartcast/trajectory.hpp"
 #include "max_memory.hpp"
 #include "scene/scene_mesh.hpp"
+#include "terminal.hpp"
 
 namespace dartcast::app {
 
@@ -81,7 +82,8 @@ int trace(const TraceArguments& arguments) {
   const std::string ending = std::filesystem::path(arguments.output).extension().string();
   if (!arguments.output.empty() && ending != ".svg" && ending != ".csv")
     throw CLI::ValidationError("-o", fmt::format("'{}' ends in neither .svg nor .csv", arguments.output));
-  Environment environment = load_environment(arguments.input, arguments.max_memory);
+  Environment environment = while_waiting("loading " + arguments.input, true,
+                                          [&] { return load_environment(arguments.input, arguments.max_memory); });
   const unsigned dimension = environment.map().dimension();
   Particles particles;
   add_particle(environment, particles, point_of(arguments.from, "--from", dimension));
@@ -108,13 +110,15 @@ void add_trace(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<TraceArguments>();
   CLI::App* verb = app.add_subcommand("trace", "List or draw the cells that a particle passes on its way.");
   verb->add_option("MESH_OR_SCENE", arguments->input, "a mesh file, or a scene (.toml), as it stands at the start")
+      ->type_name("FILE")
       ->required();
-  verb->add_option("--from", arguments->from, "where it starts: x,y or x,y,z")->required();
+  verb->add_option("--from", arguments->from, "where it starts: x,y or x,y,z")->required()->type_name("POINT");
   verb->add_option("--to", arguments->to, "where it goes, as far as the first wall; several make a path")
+      ->type_name("POINT")
       ->required()
       ->allow_extra_args(false);
-  verb->add_option("-o", arguments->output,
-                   "a drawing (.svg, in the plane) or a table (.csv); else a table is printed");
+  verb->add_option("-o", arguments->output, "a drawing (.svg, in the plane) or a table (.csv); else a table is printed")
+      ->type_name("FILE");
   add_max_memory(*verb, arguments->max_memory);
   verb->callback([arguments, &status] { status = trace(*arguments); });
 }

@@ -9,6 +9,7 @@
 #include <limits>
 #include <sstream>
 
+#include "base/closest_word.hpp"
 #include "dartcast/error.hpp"
 
 namespace dartcast {
@@ -171,7 +172,8 @@ bool TomlTable::get(std::string_view key, std::size_t& value, const std::vector<
   if (!get(key, name)) return false;
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
-    fail(key, fmt::format("{} = \"{}\": it must be one of {}", key, name, fmt::join(names, ", ")));
+    fail(key, fmt::format("{} = \"{}\": it must be one of {}{}", key, name, fmt::join(names, ", "),
+                          did_you_mean(name, std::vector<std::string>(names.begin(), names.end()))));
   value = static_cast<std::size_t>(found - names.begin());
   return true;
 }
@@ -217,7 +219,9 @@ void TomlTable::require(std::string_view key, std::string_view what) {
 void TomlTable::finish() const {
   for (const std::string& key : keys()) {
     if (known_.count(key) != 0) continue;
-    fail(key, fmt::format("the key '{}' is unknown; there are {}", key, fmt::join(known_, ", ")));
+    const std::vector<std::string> known(known_.begin(), known_.end());
+    fail(key,
+         fmt::format("the key '{}' is unknown{}; there are {}", key, did_you_mean(key, known), fmt::join(known, ", ")));
   }
 }
 
