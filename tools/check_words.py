@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Checks the English of documents, of comments in C++ and of names of tests: banned words and phrases
-(tools/banned_words.txt), how sentences start, and in public headers how long they are.
+(tools/banned_words.txt), how sentences start, and how long they are in public headers and in documents for users.
 
 Prose is read paragraph by paragraph, so that a phrase is found across the end of a line. Code in documents is left out,
 but for names that are no longer in use.
@@ -21,7 +21,9 @@ TEST_NAME = re.compile(r"\bTEST(?:_F|_P)?\(\w+, (\w+)\)")
 # What opens a sentence in the wrong way. A question may start with "What" or "Who".
 OPENING = re.compile(r"(?:(?<=^)|(?<=[.!?:;] )|(?<=\| ))(Of|What|Who|That)\b(?P<rest>[^.!?]*)(?P<end>[.!?]?)")
 SENTENCE_END = re.compile(r"(?<=[.!?:;]) ")
-MOST_WORDS = 25  # of a sentence in the contract, without what stands in parentheses
+MOST_WORDS = 25  # of a sentence, without what stands in parentheses
+# Where sentences have at most so many words: the contract, and what users read first.
+SHORT = re.compile(r"include/.*|README\.md|docs/(start|guide|scene|python|howto|questions)\.md|docs/howto/.*")
 REMEDIES = {
     "Of": 'name the subject first: "The cells in a pool.", not "Of the cells in a pool."',
     "What": "name the thing: which value, which step, which rule",
@@ -113,6 +115,19 @@ def names_of_tests(path: pathlib.Path) -> list[Paragraph]:
     return [Paragraph(path, [(number, "... " + re.sub(r"(?<=[a-z0-9])(?=[A-Z])", " ", name).lower())]) for number, name in names]
 
 
+def long_sentences(paragraph: Paragraph, whole: str) -> list[str]:
+    """A link counts by its text, and each cell of a table is a text of its own."""
+    shown = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", whole)
+    found = []
+    for sentence in SENTENCE_END.split(re.sub(r"\([^)]*\)", "", shown)):
+        for part in re.split(r"(?<!\\)\|", sentence) if whole.startswith("|") else [sentence]:
+            words = [word for word in part.split() if re.search(r"\w", word)]
+            if len(words) > MOST_WORDS:
+                start = " ".join(words[:6])
+                found.append(f'{paragraph.path}:{paragraph.lines[0][0]}: "{start} ...": {len(words)} words: make it two')
+    return found
+
+
 def findings_of(paragraph: Paragraph, bans: list[Ban]) -> list[str]:
     whole = paragraph.text()
     prose = CODE_SPAN.sub(lambda m: "`" + "_" * (len(m.group()) - 2) + "`", whole)
@@ -124,12 +139,8 @@ def findings_of(paragraph: Paragraph, bans: list[Ban]) -> list[str]:
     for match in OPENING.finditer(prose):
         if match.group("end") != "?":
             found.append(f'{where(match)}: a sentence starts with "{match.group(1)}": {REMEDIES[match.group(1)]}')
-    if paragraph.path.parts[0] == "include" and "-------" not in whole:  # no table
-        for sentence in SENTENCE_END.split(re.sub(r"\([^)]*\)", "", whole)):
-            words = [word for word in sentence.split() if re.search(r"\w", word)]
-            if len(words) > MOST_WORDS:
-                start = " ".join(words[:6])
-                found.append(f'{paragraph.path}:{paragraph.lines[0][0]}: "{start} ...": {len(words)} words: make it two')
+    if SHORT.fullmatch(str(paragraph.path)) and "-------" not in whole:  # no line of a table
+        found += long_sentences(paragraph, whole)
     return found
 
 
