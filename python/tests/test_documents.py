@@ -15,7 +15,7 @@ import dartcast
 
 BLOCK = re.compile(r"```python\n(.*?)```(?:\s*```text\n(.*?)```)?", re.DOTALL)
 SCENE = re.compile(r"```toml\n(.*?)```", re.DOTALL)
-PAGES = ["python.md", "start.md", "howto/deformation.md", "howto/response.md", "howto/results.md",
+PAGES = ["python.md", "start.md", "questions.md", "howto/deformation.md", "howto/response.md", "howto/results.md",
          "howto/cuts.md", "howto/objects.md"]
 
 
@@ -40,7 +40,7 @@ def test_code_of_a_page_runs(root: pathlib.Path, tmp_path: pathlib.Path, monkeyp
             assert printed.getvalue().strip() == expected.strip(), f"docs/{name}:{line}"
 
 
-@pytest.mark.parametrize("name", ["start.md", "howto.md", "howto/objects.md"])
+@pytest.mark.parametrize("name", ["start.md", "questions.md", "howto.md", "howto/objects.md"])
 def test_scenes_of_a_page_are_scenes(root: pathlib.Path, name: str) -> None:
     scenes = SCENE.findall((root / "docs" / name).read_text(encoding="utf-8"))
     assert scenes

@@ -363,14 +363,21 @@ class DefaultRuns : public test::CommandTest {
   // All files that the scenes of the documents name.
   void write_files() const {
     write_mesh(vessel(CellType::hexahedron), folder / "vessel.vtu");
-    for (int k = 0; k < 3; ++k) write_mesh(vessel(CellType::prism, 0.1 * k), folder / fmt::format("heart_0{}.vtu", k));
+    for (int k = 0; k < 3; ++k) {
+      for (const std::string& name : {fmt::format("heart_0{}.vtu", k), fmt::format("frame_00{}.vtu", k)})
+        write_mesh(vessel(CellType::prism, 0.1 * k), folder / name);
+    }
     (void)write("seeds.csv", "x,y,z\n0.3,0.4,0.5\n0.7,0.6,0.5\n");
-    for (const char* name : {"my.stl", "aneurysm.stl"}) (void)write(name, test::stl_text());
+    for (const char* name : {"my.stl", "aneurysm.stl", "tumour.stl"}) (void)write(name, test::stl_text());
+    (void)write("organ.stl", test::stl_text(3.0));
     for (const char* name : {"aneurysm.obj", "ball.obj"}) (void)write(name, test::obj(test::cube_squares));
     const test::FoamMesh pipe = test::foam_mesh(vessel(CellType::hexahedron));
     const test::FoamWriter writer(folder / "pipe", {});
     writer.write(pipe);
     writer.points("0.5", pipe.points);
+    const test::FoamWriter flow(folder / "case", {});
+    flow.write(pipe);
+    flow.field("0", "U", std::vector<Vec3>(vessel(CellType::hexahedron).cell_count(), {0.1, 0.0, 0.0}));
     MeshData mesh = vessel(CellType::tetrahedron);
     mesh.patch_names[5] = "inflow";
     mesh.patch_names[6] = "outflow";

@@ -79,10 +79,15 @@ inline std::string stl_facet(const std::array<std::string, 3>& corners) {
   return out + "endloop\nendfacet\n";
 }
 
-inline std::string stl_text() {
+// `size`: of the cube's edges, around the same middle; odd.
+inline std::string stl_text(double size = 1.0) {
   std::string out = "solid cube\n";
-  for (const Ids& t : cube_triangles())
-    out += stl_facet({words(cube_points[t[0]]), words(cube_points[t[1]]), words(cube_points[t[2]])});
+  const auto corner = [size](std::uint32_t i) {
+    Xyz p = cube_points[i];
+    for (double& x : p) x = 0.5 + size * (x - 0.5);
+    return words(p);
+  };
+  for (const Ids& t : cube_triangles()) out += stl_facet({corner(t[0]), corner(t[1]), corner(t[2])});
   return out + "endsolid\n";
 }
 
