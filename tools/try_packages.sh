@@ -5,6 +5,7 @@ set -euo pipefail
 
 packages="$(cd "$1" && pwd)"
 root="$packages/debian"
+tools="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 
 cleanup() { umount "$root/proc" 2>/dev/null || true; }
 trap cleanup EXIT
@@ -18,25 +19,39 @@ rm -rf "$root/packages" "$root/try"
 mkdir -p "$root/packages" "$root/try"
 cp "$packages"/*.deb "$root/packages/"
 cp /etc/apt/apt.conf.d/*proxy* "$root/etc/apt/apt.conf.d/" 2>/dev/null || true
+echo 'APT::Get::Assume-Yes "true";' >"$root/etc/apt/apt.conf.d/90yes"
 inside() { chroot "$root" env DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 "$@"; }
 inside apt-get update -q >"$packages/apt.log"
-inside sh -c 'apt-get install -q -y --no-install-recommends /packages/*.deb g++ pkg-config' >>"$packages/apt.log" 2>&1 ||
+inside sh -c 'apt-get install -q -y --no-install-recommends /packages/*.deb g++ cmake make pkg-config' >>"$packages/apt.log" 2>&1 ||
   { tail -n 20 "$packages/apt.log"; exit 1; }
 
 echo "the demo:"
 inside dartcast run /usr/share/doc/dartcast/examples/vessel.toml --steps 100 -o /try/vessel -q
 inside ls /try/vessel/report.html
-echo "Python:"
-inside python3 -c 'import dartcast as dc; print("dartcast", dc.__version__, dc.Environment(dc.generate_bar()).validity().valid)'
-echo "a program with pkg-config:"
-cat >"$root/try/first.cpp" <<'TEXT'
-#include <cstdio>
-#include "dartcast/dartcast.hpp"
-int main() {
-  dartcast::Environment environment(dartcast::generate_bar());
-  dartcast::Simulation simulation(environment, {.dt = 0.1, .response = dartcast::Reflect{0.5}});
-  simulation.add({{2.5, 2.5, 14.0}}, {30.0, 0.0, 1.0});
-  for (const auto& c : simulation.step().contacts()) std::printf("t = %.3f at x = %.3f\n", c.time_of_impact, c.point.x);
+
+# The tasks of docs/start.md, by its own lines. The reader's surface is a cube of 20 mm.
+"$tools/start_lines.py" "$root/try/start"
+mkdir -p "$root/try/start/install/build/packages"
+cp "$packages"/*.deb "$root/try/start/install/build/packages/"
+task() {
+  echo "docs/start.md, $1:"
+  inside sh -c "cd /try/start/$1 && sh run.sh" >"$packages/$1.log" 2>&1 || { tail -n 20 "$packages/$1.log"; exit 1; }
+  tail -n "$2" "$packages/$1.log"
 }
+task install 1
+inside python3 - >"$root/try/start/surface/my.stl" <<'TEXT'
+import dartcast as dc
+mesh = dc.generate_box(cells=[1, 1, 1], size=[20.0, 20.0, 20.0])
+solid = dc.solid_of_cells(mesh)
+print("solid cube")
+for a, b, c in solid.points[solid.triangles]:
+    print("facet normal 0 0 0\nouter loop", *("vertex {} {} {}".format(*p) for p in (a, b, c)), "endloop\nendfacet", sep="\n")
+print("endsolid cube")
 TEXT
-inside sh -c 'cd /try && g++ first.cpp $(pkg-config --cflags --libs dartcast) -o first && ./first'
+task surface 2
+task deformation 0
+task program 1
+echo "the program with pkg-config:"
+inside sh -c 'cd /try/start/program && g++ first.cpp $(pkg-config --cflags --libs dartcast) -o first && ./first'
+echo "completion:"
+inside bash -c 'source /usr/share/bash-completion/completions/dartcast && COMP_WORDS=(dartcast ru) COMP_CWORD=1 && _dartcast && echo "ru: ${COMPREPLY[*]}"'
