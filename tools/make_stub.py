@@ -25,7 +25,8 @@ import read_headers
 
 HEAD = '''"""The types of the extension module, one section for each public header. Written by tools/make_stub.py.
 
-Docstrings are those of the headers, at run time. `Points` is float64 (n, 3), C-contiguous.
+Docstrings are those of the headers, at run time. `Points` is float64 (n, 3), C-contiguous; an argument may be all
+that numpy.asarray() makes such an array of.
 """
 from __future__ import annotations
 
@@ -51,6 +52,7 @@ Marks = Union[numpy.typing.NDArray[numpy.bool_], numpy.typing.NDArray[numpy.uint
 Records = numpy.typing.NDArray[numpy.void]
 Vector = Union[Sequence[float], Floats]
 Path = Union[str, os.PathLike[str]]
+_Points = numpy.typing.ArrayLike
 _Numbers = Union[Sequence[float], Floats]
 _Wholes = Union[Sequence[int], Integers]
 _Pair = tuple[int, int]
@@ -76,7 +78,7 @@ NUMBERS = ("Cell", "Vertex", "Patch")
 PAIRS = ("Dart", "CellFace", "SimplexId", "CellHandle")
 #: What an argument may be, and what a result is.
 ARGUMENTS = {**dict.fromkeys(NUMBERS, "int"), **dict.fromkeys(PAIRS, "_Pair"), "list": "Sequence", "dict": "Mapping",
-             "Integers": "_Wholes", "WallResponse": "_Response", "WallResponses": "_Responses", "Responses": "_Responses",
+             "Integers": "_Wholes", "Points": "_Points", "Floats": "_Numbers", "WallResponse": "_Response", "WallResponses": "_Responses", "Responses": "_Responses",
              "Respond": "_Respond", "SurfaceRespond": "_SurfaceRespond", "Ranks": "_Ranks"}
 RESULTS = {"Vector": "Floats", "Path": "pathlib.Path", "Integers": "NDArray[uint32]", "Iterator": "Iterator[Any]"}
 EXIT = ("self, type: type[BaseException] | None, value: BaseException | None, traceback: TracebackType | None")

@@ -75,7 +75,7 @@ void expect_report_of(const StepReport& report, std::size_t count) {
 void bind_functions(py::module_& m) {
   m.def(
       "hold_stopped",
-      [](const StepReport& report, const Typed<"Responses">& responses, const Typed<"Points">& given,
+      [](const StepReport& report, const Typed<"Responses">& responses, const Typed<"NDArray[float64]">& given,
          const Typed<"NDArray[uint8] | None">& statuses, double dt, const Acceleration& acceleration) {
         const auto velocities = writable_vectors(given, "velocities");
         const std::vector<ParticleStatus> alive(statuses.is_none() ? velocities.size() : 0);

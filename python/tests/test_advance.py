@@ -111,15 +111,16 @@ def test_a_motion_along_the_wall_is_not_turned_into_it():
         assert len(report.contacts) >= 1 and np.allclose(parts.positions, [[0.6, 0.7, 1.0]])
 
 
-def test_strided_answers_are_taken():
+def test_answers_in_any_array_are_taken():
     env, parts = scene()
     env.advance(parts, push(parts, 0.3)[1], lambda c, w: np.asfortranarray(0.0 * c["unused"]))
+    env.advance(parts, push(parts, 0.3)[1], lambda c, w: np.zeros((len(c), 3), dtype=np.float32).tolist())
 
 
 @pytest.mark.parametrize("answer, error", [
     (lambda c, w: np.zeros((len(c) + 1, 3)), TypeError),
     (lambda c, w: np.zeros((len(c), 2)), TypeError),
-    (lambda c, w: np.zeros((len(c), 3), dtype=np.float32), TypeError),
+    (lambda c, w: np.zeros((len(c), 3), dtype=np.complex64), TypeError),
     (lambda c, w: "far", TypeError),
     (lambda c, w: (np.zeros((len(c), 3)), np.zeros(len(c))), TypeError),
     (lambda c, w: (np.zeros((len(c), 3)), np.zeros(len(c) + 1, dtype=bool)), TypeError),
@@ -235,12 +236,10 @@ def test_threads_that_share_an_environment_never_break_it():
 
 
 @pytest.mark.parametrize("targets, error", [
-    (np.zeros((50, 3), dtype=np.float32), TypeError),
+    (np.zeros((50, 3), dtype=np.complex64), TypeError),
     (np.zeros((50, 2)), TypeError),
     (np.zeros(150), TypeError),
-    (np.zeros((3, 50)).T, TypeError),
-    (np.zeros((50, 6))[:, ::2], TypeError),
-    ([[0.0, 0.0, 0.0]] * 50, TypeError),
+    (np.zeros((3, 50)), TypeError),
     (None, TypeError),
     (np.zeros((49, 3)), dartcast.InvalidArgument),
     (np.full((50, 3), np.nan), dartcast.InvalidArgument),
@@ -257,9 +256,9 @@ def test_targets_that_do_not_fit_are_refused(targets, error):
 def test_the_message_says_what_was_expected_what_came_and_what_to_do():
     env, parts = scene()
     with pytest.raises(TypeError) as e:
-        env.advance(parts, np.zeros((50, 3), dtype=np.float32))
+        env.advance(parts, np.zeros((3, 50), dtype=np.float32))
     text = str(e.value)
-    assert "targets: expected float64 (n, 3), C-contiguous; got float32 (50, 3)" in text and "ascontiguousarray" in text
+    assert "targets: expected float64 (n, 3), C-contiguous; got float32 (3, 50). Convert it by x.T" in text
 
 
 def test_options_out_of_range_are_refused():

@@ -38,7 +38,7 @@ def test_moves():
     with pytest.raises(dartcast.InvalidArgument, match="expected 27 positions"):
         c.move(np.zeros((26, 3)))
     with pytest.raises(TypeError, match="points: expected float64"):
-        c.move(np.zeros((27, 3), dtype=np.float32))
+        c.move(np.zeros((27, 3), dtype=np.complex64))
 
 
 def test_simplices_that_are_not_there_are_refused():

@@ -63,7 +63,7 @@ def test_data_that_do_not_fit_an_edit_are_refused():
         dartcast.topology.split_edge(edit.topology, (first(edit.map), 0))
         report = edit.commit()
     with pytest.raises(TypeError, match="values: expected float64"):
-        dartcast.topology.update_after_edit(report, 28, np.arange(27))
+        dartcast.topology.update_after_edit(report, 28, np.zeros(27, dtype=complex))
     report.placed = [dartcast.topology.PlacedVertex(3, [4000000000], [1.0])]
     with pytest.raises(dartcast.InvalidArgument, match="not below 28"):
         dartcast.topology.update_after_edit(report, 28, np.arange(27.0))

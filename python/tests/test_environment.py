@@ -65,10 +65,52 @@ def test_locate_refuses_what_is_no_point():
     env = box()
     with pytest.raises(ValueError, match="finite|range"):
         env.locate([np.nan, 0.0, 0.0])
-    with pytest.raises(TypeError, match="float32"):
-        env.locate(np.zeros((4, 3), dtype=np.float32))
+    with pytest.raises(TypeError, match="complex64"):
+        env.locate(np.zeros((4, 3), dtype=np.complex64))
     with pytest.raises(TypeError, match="three numbers"):
         env.locate([1.0, 2.0])
+
+
+class Frame:
+    """As a frame of pandas: NumPy makes an array of it."""
+
+    def __init__(self, values):
+        self.values = values
+
+    def __array__(self, dtype=None, copy=None):
+        return np.asarray(self.values, dtype)
+
+
+@pytest.mark.parametrize("change", [
+    lambda x: x.tolist(), lambda x: tuple(map(tuple, x)), lambda x: x.astype(np.float32), lambda x: x.astype(">f8"),
+    np.asfortranarray, lambda x: np.repeat(x, 2, axis=0)[::2], lambda x: x[::-1][::-1], Frame,
+    lambda x: np.concatenate([x, x], axis=1)[:, :3], lambda x: list(x)])
+def test_numbers_in_any_array_are_the_same_to_the_bit(change):
+    env = box(4)
+    x = np.random.default_rng(3).uniform(0, 1, (50, 3)).astype(np.float32).astype(float)
+    plain, _ = env.add(x)
+    given, added = env.add(change(x))
+    assert added.all() and given.states.tobytes() == plain.states.tobytes()
+    assert env.locate(change(x)).tobytes() == env.locate(x).tobytes()
+    env.advance(given, change(x[::-1].copy()))
+    env.advance(plain, x[::-1].copy())
+    assert given.states.tobytes() == plain.states.tobytes()
+    assert dartcast.MeshData(change(x), {"tetra": [[0, 1, 2, 3]]}).points.tobytes() == x.tobytes()
+
+
+def test_whole_numbers_are_points_too():
+    env = box()
+    assert env.locate([[0, 0, 1], [1, 1, 1]])["place"].tolist() == [dartcast.Place.FREE] * 2
+    assert env.locate(np.ones((1, 3), dtype=np.int64))["kind"].tolist() == [dartcast.Kind.VERTEX]
+
+
+def test_an_array_that_a_call_writes_to_is_not_copied():
+    env = box()
+    parts = centred(env)
+    with pytest.raises(TypeError, match="velocities: expected float64"):
+        env.advance(parts, parts.positions, dartcast.Slide(), velocities=np.zeros((3, 3), dtype=np.float32), dt=0.1)
+    with pytest.raises(TypeError, match="velocities: expected float64"):
+        env.advance(parts, parts.positions, dartcast.Slide(), velocities=np.zeros((3, 3)).tolist(), dt=0.1)
 
 
 def test_free_regions_are_chosen_by_name():
@@ -199,8 +241,8 @@ def test_moves_carry_particles_along():
     assert np.allclose(parts.positions, x + [1, 0, 0], atol=1e-12) and not env.awaits_advance(parts)
     with pytest.raises(dartcast.InvalidArgument):
         env.move(rest[:-1])
-    with pytest.raises(TypeError, match="C-contiguous"):
-        env.move(np.asfortranarray(rest))
+    with pytest.raises(TypeError, match="Convert it by x.T"):
+        env.move(rest.T)
     env.move(rest)
     env.move(rest)
     with pytest.raises(dartcast.InvalidArgument, match="missed"):

@@ -109,10 +109,17 @@ def test_a_named_patch_does_not_take_the_tag_of_another():
 
 
 @pytest.mark.parametrize("points, text", [
-    (POINTS.astype(np.float32), "expected float64 .n, 3., C-contiguous; got float32 .5, 3."),
+    (POINTS.astype(complex), "expected float64 .n, 3., C-contiguous; got complex128 .5, 3."),
     (POINTS[:, :2].copy(), r"got float64 \(5, 2\)"),
-    (np.asfortranarray(POINTS), "not C-contiguous"),
-    (POINTS.tolist(), "got a list"),
+    (POINTS.T, r"got float64 \(3, 5\).*Convert it by x.T"),
+    (POINTS.ravel(), r"got float64 \(15,\).*reshape\(-1, 3\), if"),
+    (POINTS.astype(np.longdouble), "got float128|got longdouble"),
+    (POINTS.astype(np.int64) + 2**53 + 1, "got int64"),
+    (POINTS.astype(np.uint64) + 2**53 + 1, "got uint64"),
+    (POINTS.astype(bool), "got bool"),
+    (POINTS.astype(str), "got <U"),
+    ([[0.0, 1.0], [2.0]], "got a list"),
+    ("abc", "got a str"),
 ])
 def test_points_are_refused(points, text):
     with pytest.raises(TypeError, match=text):
@@ -186,7 +193,7 @@ def test_attributes_can_be_set():
     assert np.array_equal(mesh.points, POINTS * 2) and list(mesh.free) == [0, 1]
     assert list(mesh.source) == [5, 6] and list(mesh.point_data) == ["t"]
     with pytest.raises(TypeError, match="MeshData.points: expected float64"):
-        mesh.points = [[0, 0, 0]]
+        mesh.points = [[0, 0]]
     with pytest.raises(dartcast.InvalidArgument, match="out of range"):
         mesh.types = [8]
     with pytest.raises(TypeError):

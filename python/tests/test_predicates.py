@@ -47,7 +47,7 @@ def test_other_arrays_are_refused():
     with pytest.raises(dartcast.InvalidArgument, match="c: expected 2 points"):
         dartcast.predicates.orient3d(one, one, np.zeros((3, 3)), one)
     with pytest.raises(TypeError, match="b: expected float64"):
-        dartcast.predicates.orient2d(one, one.astype(np.float32), one)
+        dartcast.predicates.orient2d(one, one.astype(np.complex64), one)
     with pytest.raises(TypeError, match="a: expected three numbers"):
         dartcast.predicates.orient2d([0, 0], one, one)
 

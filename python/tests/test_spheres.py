@@ -66,11 +66,11 @@ def test_arguments_that_do_not_fit_are_refused():
     for radii, named, error in ((np.array([-1.0]), {}, dartcast.InvalidArgument),
                                 (np.array([np.nan]), {}, dartcast.InvalidArgument),
                                 (np.zeros(2), {}, dartcast.InvalidArgument),
-                                (np.zeros(1, dtype=np.float32), {}, TypeError),
+                                (np.zeros(1, dtype=np.complex64), {}, TypeError),
                                 (np.zeros(1), dict(clearances=np.zeros(2)), dartcast.InvalidArgument),
                                 (np.zeros(1), dict(respond=lambda c, w: None), dartcast.InvalidArgument)):
         with pytest.raises(error):
             stepper.advance(env, parts, radii, x, **named)
     with pytest.raises(TypeError, match="targets"):
-        stepper.advance(env, parts, np.zeros(1), x.astype(np.float32))
+        stepper.advance(env, parts, np.zeros(1), x.astype(np.complex64))
     assert np.array_equal(parts.positions, x)

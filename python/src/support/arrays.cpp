@@ -36,10 +36,64 @@ bool is_vectors(const py::object& x) {
   return a.ndim() == 2 && a.shape(1) == 3 && is_contiguous(a);
 }
 
-constexpr const char* convert_vectors = "numpy.ascontiguousarray(x, dtype=float).reshape(-1, 3)";
-constexpr const char* convert_numbers = "numpy.ascontiguousarray(x, dtype=float)";
+bool is_numbers(const py::object& x) {
+  return py::isinstance<py::array_t<double>>(x) && py::reinterpret_borrow<py::array>(x).ndim() == 1 &&
+         is_contiguous(py::reinterpret_borrow<py::array>(x));
+}
+
+// The code that makes vectors of the object; numbers alone do not say which of them belong together.
+const char* vectors_from(const py::object& x) {
+  if (py::isinstance<py::array>(x)) {
+    const auto a = py::reinterpret_borrow<py::array>(x);
+    if (a.ndim() == 2 && a.shape(0) == 3 && a.shape(1) != 3) return "x.T: a row for each point";
+    if (a.ndim() == 1 && a.size() % 3 == 0) return "x.reshape(-1, 3), if x, y and z of a point stand together";
+  }
+  return "numpy.asarray(x, dtype=float), with a row of three numbers for each point";
+}
+
+constexpr const char* numbers_from = "numpy.asarray(x, dtype=float)";
+
+// Whether each of its numbers is a double.
+bool are_doubles(const py::array& a) {
+  const char kind = a.dtype().kind();
+  const py::ssize_t bytes = a.dtype().itemsize();
+  if (kind == 'f') return bytes <= 8;
+  if (kind != 'i' && kind != 'u') return false;
+  if (bytes < 8) return true;
+  constexpr std::int64_t limit = std::int64_t{1} << 53;
+  const auto within = [&](const char* compare, std::int64_t bound) {
+    return a.attr(compare)(bound).attr("all")().cast<bool>();
+  };
+  return within("__le__", limit) && (kind == 'u' || within("__ge__", -limit));
+}
+
+// A copy as doubles, C-contiguous, of an object that numpy.asarray() makes an array of these dimensions; else the object.
+py::object converted(py::handle x, py::ssize_t dimensions) {
+  auto given = py::reinterpret_borrow<py::object>(x);
+  const bool is_list = PySequence_Check(x.ptr()) != 0 && !py::isinstance<py::str>(x) && !py::isinstance<py::bytes>(x);
+  if (!py::isinstance<py::array>(x) && !is_list && !py::hasattr(x, "__array__")) return given;
+  const auto a = py::array::ensure(x);
+  if (!a) {
+    PyErr_Clear();
+    return given;
+  }
+  if (a.ndim() != dimensions || (dimensions == 2 && a.shape(1) != 3) || !are_doubles(a)) return given;
+  py::array_t<double> made(std::vector<py::ssize_t>(a.shape(), a.shape() + a.ndim()));
+  made[py::ellipsis()] = a;
+  return made;
+}
 
 }  // namespace
+
+py::object converted_vectors(py::handle x) {
+  const auto given = py::reinterpret_borrow<py::object>(x);
+  return is_vectors(given) ? given : converted(x, 2);
+}
+
+py::object converted_numbers(py::handle x) {
+  const auto given = py::reinterpret_borrow<py::object>(x);
+  return is_numbers(given) ? given : converted(x, 1);
+}
 
 void refuse_array(const py::object& x, const char* name, const char* expected, const char* remedy) {
   throw py::type_error(std::string(name) + ": expected " + expected + "; got " + description(x) + ". Convert it by " +
@@ -51,22 +105,20 @@ bool is_array(const py::object& x, int dimensions) {
 }
 
 std::span<const Vec3> vectors(const py::object& x, const char* name) {
-  if (!is_vectors(x)) refuse_array(x, name, "float64 (n, 3), C-contiguous", convert_vectors);
+  if (!is_vectors(x)) refuse_array(x, name, "float64 (n, 3), C-contiguous", vectors_from(x));
   const auto a = py::reinterpret_borrow<py::array>(x);
   return {static_cast<const Vec3*>(a.data()), static_cast<std::size_t>(a.shape(0))};
 }
 
 std::span<Vec3> writable_vectors(const py::object& x, const char* name) {
-  if (!is_vectors(x)) refuse_array(x, name, "float64 (n, 3), C-contiguous", convert_vectors);
+  if (!is_vectors(x)) refuse_array(x, name, "float64 (n, 3), C-contiguous", vectors_from(x));
   auto a = py::reinterpret_borrow<py::array>(x);
   if (!a.writeable()) refuse_array(x, name, "a writable array", "x.copy()");
   return {static_cast<Vec3*>(a.mutable_data()), static_cast<std::size_t>(a.shape(0))};
 }
 
 std::span<const double> numbers(const py::object& x, const char* name) {
-  const bool right = py::isinstance<py::array_t<double>>(x) && py::reinterpret_borrow<py::array>(x).ndim() == 1 &&
-                     is_contiguous(py::reinterpret_borrow<py::array>(x));
-  if (!right) refuse_array(x, name, "float64 (n,), C-contiguous", convert_numbers);
+  if (!is_numbers(x)) refuse_array(x, name, "float64 (n,), C-contiguous", numbers_from);
   const auto a = py::reinterpret_borrow<py::array>(x);
   return {static_cast<const double*>(a.data()), static_cast<std::size_t>(a.size())};
 }

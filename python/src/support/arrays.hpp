@@ -1,8 +1,9 @@
 // Vectors and arrays between NumPy and C++.
 //
-// An argument is taken without a copy and must fit exactly: float64 of shape (n, 3), C-contiguous. Another array is
-// refused with a message that says what was expected, what came, and how to convert it. A result is a fresh array. One
-// that is an attribute is read-only: writing to it would change nothing.
+// An argument that is float64 of shape (n, 3) and C-contiguous is taken without a copy. Lists, frames of pandas, strided
+// arrays and arrays of other numbers are copied, where each number is a double to the bit. All else is refused with a
+// message that says what was expected, what came, and how to convert it. An array that a call writes to is never copied.
+// A result is a fresh array. One that is an attribute is read-only: writing to it would change nothing.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "dartcast/vec3.hpp"
+#include "support/typed.hpp"
 
 namespace dartcast::python {
 
@@ -85,7 +87,8 @@ template <>
 struct type_caster<std::vector<dartcast::Vec3>> {
   PYBIND11_TYPE_CASTER(std::vector<dartcast::Vec3>, const_name("float64 (n, 3)"));
   bool load(handle from, bool /*convert*/) {
-    const auto v = dartcast::python::vectors(reinterpret_borrow<object>(from), "the array");
+    const object converted = dartcast::python::converted_vectors(from);
+    const auto v = dartcast::python::vectors(converted, "the array");
     value.assign(v.begin(), v.end());
     return true;
   }

@@ -244,7 +244,8 @@ void add_values(MeshData& mesh, const MeshArguments& given, const std::vector<Bl
 MeshData mesh_from_arrays(const MeshArguments& given) {
   MeshData mesh;
   if (!given.points.is_none()) {
-    const auto points = vectors(given.points, "points");
+    const py::object converted = converted_vectors(given.points);
+    const auto points = vectors(converted, "points");
     mesh.points.assign(points.begin(), points.end());
   }
   std::vector<Block> cells;

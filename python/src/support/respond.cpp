@@ -39,9 +39,7 @@ void read_answers(const py::object& given, std::span<AfterContact> after) {
   if (given.is_none()) return;
   const bool is_pair = py::isinstance<py::tuple>(given) && py::len(given) == 2;
   const py::object displacements = is_pair ? py::object(given.cast<py::tuple>()[0]) : given;
-  const auto ensured = py::isinstance<py::array_t<double>>(displacements)
-                           ? py::object(py::array_t<double, py::array::c_style>::ensure(displacements))
-                           : displacements;
+  const py::object ensured = converted_vectors(displacements);
   const auto x = vectors(ensured, "the response's displacements");
   if (x.size() != after.size()) refuse_array(ensured, "the response", expected_answers, "one row for each contact");
   for (std::size_t i = 0; i < after.size(); ++i) after[i].displacement = x[i];

@@ -32,6 +32,12 @@ struct pybind11::detail::handle_type_name<dartcast::python::Typed<Type>> {
 
 namespace dartcast::python {
 
+/// An argument of points, as the next functions take it: the same object, or a copy of its numbers as float64 (n, 3),
+/// C-contiguous. The same object, too, where it has other numbers or another shape.
+pybind11::object converted_vectors(pybind11::handle x);
+/// The same of float64 (n,).
+pybind11::object converted_numbers(pybind11::handle x);
+
 /// A value of a member as an object of Python, which signatures show as a T.
 template <class T>
 struct As : pybind11::object {
@@ -56,3 +62,31 @@ template <class T>
 struct pybind11::detail::handle_type_name<dartcast::python::As<T>> {
   static constexpr auto name = make_caster<T>::name;
 };
+
+namespace pybind11::detail {
+
+/// Arguments that a call only reads: converted, and kept as long as the call.
+template <class Type, object (*convert)(handle)>
+struct converting_caster : pyobject_caster<Type> {
+  bool load(handle from, bool /*convert*/) {
+    this->value = Type(convert(from));
+    return true;
+  }
+};
+template <>
+struct type_caster<dartcast::python::Typed<"Points">>
+    : converting_caster<dartcast::python::Typed<"Points">, dartcast::python::converted_vectors> {};
+template <>
+struct type_caster<dartcast::python::Typed<"Vector or Points">>
+    : converting_caster<dartcast::python::Typed<"Vector or Points">, dartcast::python::converted_vectors> {};
+template <>
+struct type_caster<dartcast::python::Typed<"Vector | Points">>
+    : converting_caster<dartcast::python::Typed<"Vector | Points">, dartcast::python::converted_vectors> {};
+template <>
+struct type_caster<dartcast::python::Typed<"Floats">>
+    : converting_caster<dartcast::python::Typed<"Floats">, dartcast::python::converted_numbers> {};
+template <>
+struct type_caster<dartcast::python::Typed<"float | Floats">>
+    : converting_caster<dartcast::python::Typed<"float | Floats">, dartcast::python::converted_numbers> {};
+
+}  // namespace pybind11::detail

@@ -37,7 +37,7 @@ def of_data() -> Calls:
                                         point_data={"values": POINTS}, cell_data={"values": [1.0, 2.0]}),
         "MeshData: polyhedra": lambda: dc.MeshData(
             POINTS, {"polyhedron": [[[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]]}),
-        "MeshData: points refused": refused(lambda: dc.MeshData(POINTS.astype(np.float32), {"tetra": TETRA})),
+        "MeshData: points refused": refused(lambda: dc.MeshData(POINTS.astype(np.complex64), {"tetra": TETRA})),
         "MeshData: cells refused": refused(lambda: dc.MeshData(POINTS, {"tetra": TETRA + 5})),
         "MeshData: regions refused": refused(lambda: dc.MeshData(POINTS, {"tetra": TETRA}, regions=[1])),
         "MeshData.cell": lambda: mesh.cell(3), "MeshData.cell: refused": refused(lambda: mesh.cell(10**6)),

@@ -24,7 +24,7 @@ def of_predicates() -> Calls:
     for name in ("orient2d", "orient2d_exact", "orient2d_value"):
         table[name] = lambda f=getattr(dc.predicates, name): f(a, b, c)
         table[f"{name}: one"] = lambda f=getattr(dc.predicates, name): f([0, 0, 0], [1, 0, 0], [0, 1, 0])
-        table[f"{name}: refused"] = refused(lambda f=getattr(dc.predicates, name): f(a, b.astype(np.float32), c))
+        table[f"{name}: refused"] = refused(lambda f=getattr(dc.predicates, name): f(a, b.astype(np.complex64), c))
     line = dc.predicates.SymbolicPerturbation([0, 0, 0], X[0, :3].copy())
     plane = dc.predicates.PlanarSymbolicPerturbation([0, 0, 0], np.zeros((0, 3)))
     return table | {
