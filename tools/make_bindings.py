@@ -70,7 +70,7 @@ FUNCTIONS = """
     check_surface check_threads decompose divide_into_simplices draft_of edge_orbit face_orbit filter_applies
     generate_bar has_parts histogram_text is_mass is_radius is_surface_file kind_of load_scene_files max_threads
     merge_cells merge_edges merge_faces mesh_endings mesh_part mesh_surfaces open_faces overlapping_clusters
-    parse_scene partition plane_bound_holds plane_filter_applies plane_through read_mesh read_mesh_part read_scene
+    parse_scene partition plane_bound_holds plane_filter_applies plane_through read_mesh_part read_scene
     read_surface read_valid_mesh repair report_file sample_solid sample_surface sample_volume sew solid_of_cells
     solid_of_polyline split_by_plane split_edge split_face summary_json summary_text surface_endings
     trajectory_points unsew verdict_name version vertex_orbit writable_mesh_endings write_lagrangian

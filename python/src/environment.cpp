@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bind.hpp"
+#include "dartcast/mesh_files.hpp"
 #include "dartcast/mesh_selection.hpp"
 #include "dartcast/validity.hpp"
 #include "support/environments.hpp"
@@ -18,7 +19,9 @@ namespace py = pybind11;
 namespace dartcast::python::environment {
 namespace {
 
-EnvironmentPointer make(const MeshData& mesh, Threads threads, const std::optional<std::vector<std::string>>& free) {
+using FreeNames = std::optional<std::vector<std::string>>;
+
+EnvironmentPointer of_mesh(const MeshData& mesh, Threads threads, const FreeNames& free) {
   const MeshUse use(mesh);
   const py::gil_scoped_release release;
   check_arrays(mesh);
@@ -29,6 +32,27 @@ EnvironmentPointer make(const MeshData& mesh, Threads threads, const std::option
   handle->environment = kept.get();
   handle->owner = std::move(kept);
   return handle;
+}
+
+EnvironmentPointer of_file(const MeshFile& file, Threads threads, const FreeNames& free) {
+  if (!file.report.valid()) throw InvalidMesh(file.report.file + ": " + first_defect(file.report));
+  return of_mesh(file.mesh, threads, free);
+}
+
+EnvironmentPointer make(const Typed<"MeshData | MeshFile | Path">& mesh, Threads threads, const FreeNames& free) {
+  if (py::isinstance<MeshData>(mesh)) return of_mesh(mesh.cast<const MeshData&>(), threads, free);
+  if (py::isinstance<MeshFile>(mesh)) return of_file(mesh.cast<const MeshFile&>(), threads, free);
+  if (!py::isinstance<py::str>(mesh) && !py::hasattr(mesh, "__fspath__"))
+    throw py::type_error("mesh: expected a MeshData, the result of read_mesh(), or the path of a mesh file; got a " +
+                         py::type::of(mesh).attr("__name__").cast<std::string>());
+  const auto path = mesh.cast<std::filesystem::path>();
+  MeshFile file;
+  {
+    const py::gil_scoped_release release;
+    file = read_mesh(path);
+  }
+  expect_mesh_file(path, file);
+  return of_file(file, threads, free);
 }
 
 void bind_parts(EnvironmentClass& c) {
@@ -140,8 +164,9 @@ void bind(py::module_& m) {
                      about("Environment", "It serves one call at a time: a second thread gets InUse."));
   c.def(py::init(&make), py::arg("mesh"), py::arg("threads") = Threads{}, py::arg("free") = py::none(),
         about("Environment::Environment",
-              "The mesh is copied, and stays as it is. free: names of regions whose cells are free, all others are "
-              "blocked (select_free_regions()); None: as the mesh says."));
+              "mesh: MeshData, or what read_mesh() returns, or the path of a mesh file. It is copied, and stays as it "
+              "is. free: names of regions whose cells are free, all others are blocked (select_free_regions()); None: "
+              "as the mesh says."));
   bind_parts(c);
   bind_queries(c);
   environment_adding::bind(c);

@@ -35,6 +35,21 @@ void bind_mesh_file(py::module_& m) {
 
 void bind(py::module_& m) {
   bind_mesh_file(m);
+  m.def(
+      "read_mesh",
+      [](const std::filesystem::path& path, const ReadOptions& options) {
+        const ReadOptions own = options;
+        MeshFile file;
+        {
+          const py::gil_scoped_release release;
+          file = read_mesh(path, own);
+        }
+        expect_mesh_file(path, file);
+        return file;
+      },
+      about("read_mesh",
+            "Raises FileNotFoundError where there is no such file, and InvalidArgument for a surface. "
+            "`Environment(path)` reads a mesh and takes it if it is valid."));
   function(m, "write_mesh", &write_mesh, "Raises InvalidArgument, too, where the mesh's arrays contradict each other.");
   m.def(
       "write_bytes",

@@ -9,6 +9,8 @@ import pytest
 
 meshio = pytest.importorskip("meshio")
 
+TETRAHEDRON = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n"
+
 
 def mixed_box():
     return dartcast.generate_box(cells=[2, 2, 2], mixed=True, blocked_layer=False, seed=3)
@@ -55,7 +57,7 @@ def test_files_of_tetgen_are_read(tmp_path):
 
 def test_a_mesh_around_a_surface(tmp_path):
     surface = tmp_path / "tetrahedron.off"
-    surface.write_text("OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n", encoding="utf-8")
+    surface.write_text(TETRAHEDRON, encoding="utf-8")
     scene = dartcast.formats.SurfaceScene(surfaces=[dartcast.formats.NamedSurface(region="lumen", file=surface)], box=2.0)
     mesh, report = dartcast.formats.mesh_surfaces(scene)
     assert report.valid, report
@@ -89,6 +91,36 @@ def test_a_file_that_is_no_mesh_is_a_defect_or_an_error(tmp_path):
         dartcast.formats.read_valid_mesh(path)
     with pytest.raises(dartcast.InvalidMesh):
         dartcast.formats.read_surface(tmp_path / "missing.stl")
+    with pytest.raises(dartcast.InvalidMesh, match="broken.msh"):
+        dartcast.Environment(path)
+    with pytest.raises(dartcast.InvalidMesh, match="broken.msh"):
+        dartcast.Environment(dartcast.read_mesh(path))
+
+
+def test_a_missing_file_and_a_surface_are_no_meshes(tmp_path):
+    for call in (dartcast.read_mesh, dartcast.Environment):
+        for name in ("nofile.vtu", "nofile.stl"):
+            with pytest.raises(FileNotFoundError, match=name) as raised:
+                call(tmp_path / name)
+            assert raised.value.filename == str(tmp_path / name)
+    surface = tmp_path / "tetra.off"
+    surface.write_text(TETRAHEDRON, encoding="utf-8")
+    for call in (dartcast.read_mesh, dartcast.Environment):
+        with pytest.raises(dartcast.InvalidArgument, match=r"this is a surface: read_surface\(\) reads it"):
+            call(surface)
+
+
+def test_an_environment_is_made_from_a_file(tmp_path):
+    path = tmp_path / "box.vtu"
+    mesh = dartcast.generate_box(cells=[3, 2, 1])
+    mesh.regions = [1, 2] * 3
+    mesh.region_names = {1: "left", 2: "right"}
+    dartcast.write_mesh(mesh, path)
+    for given in (path, str(path), dartcast.read_mesh(path), dartcast.read_mesh(path).mesh):
+        environment = dartcast.Environment(given, 1, ["left"])
+        assert np.array_equal(environment.positions, mesh.points)
+        assert environment.locate([0.5, 0.5, 0.5]).place == dartcast.Place.FREE
+        assert environment.locate([1.5, 0.5, 0.5]).place == dartcast.Place.BLOCKED
 
 
 def test_a_mesh_that_contradicts_itself_is_not_written(tmp_path):
@@ -110,7 +142,7 @@ def test_a_memory_limit_is_kept(tmp_path):
 
 def test_surfaces(tmp_path):
     path = tmp_path / "tetra.off"
-    path.write_text("OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n")
+    path.write_text(TETRAHEDRON)
     assert dartcast.formats.is_surface_file(path) and not dartcast.formats.is_surface_file("a.vtu")
     assert ".off" in dartcast.formats.surface_endings()
     mesh, report = dartcast.formats.read_surface(path)

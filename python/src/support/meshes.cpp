@@ -2,10 +2,14 @@
 #include "support/meshes.hpp"
 
 #include <array>
+#include <cerrno>
+#include <system_error>
 #include <unordered_map>
 
 #include "dartcast/error.hpp"
 #include "support/in_use.hpp"
+
+namespace py = pybind11;
 
 namespace dartcast::python {
 namespace {
@@ -109,9 +113,23 @@ void check_arrays(const MeshData& mesh) {
 
 std::string first_defect(const MeshReport& report) {
   const Finding& f = report.defects.front();
+  if (f.first.empty()) return f.message;
   std::string text = f.message + ": " + std::to_string(f.count) + ", the first: ";
   for (std::size_t i = 0; i < f.first.size(); ++i) text += (i > 0 ? ", " : "") + std::to_string(f.first[i]);
   return text;
+}
+
+void expect_mesh_file(const std::filesystem::path& path, const MeshFile& file) {
+  if (file.mesh.cell_count() > 0) return;
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) {
+    PyErr_SetObject(PyExc_FileNotFoundError, py::make_tuple(ENOENT, "there is no such mesh file", path.string()).ptr());
+    throw py::error_already_set();
+  }
+  if (is_surface_file(path))
+    throw InvalidArgument(path.string() +
+                          ": this is a surface: read_surface() reads it, and formats.mesh_surfaces() fills " +
+                          "it with cells (needs tetgen or gmsh)");
 }
 
 MeshData checked_mesh(const MeshData& mesh) {

@@ -3,10 +3,12 @@
 
 #include <pybind11/pybind11.h>
 
+#include <filesystem>
 #include <string>
 
 #include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_data.hpp"
+#include "dartcast/mesh_files.hpp"
 
 namespace dartcast::python {
 
@@ -29,6 +31,10 @@ void check_arrays(const MeshData& mesh);
 
 /// The text of a mesh's first defect, with its first places.
 std::string first_defect(const MeshReport& report);
+
+/// Throws FileNotFoundError where there is no such file, and InvalidArgument that names the right call where it is a
+/// surface, unless a mesh was read from it.
+void expect_mesh_file(const std::filesystem::path& path, const MeshFile& file);
 
 /// A copy as check_and_repair() repairs it. Throws InvalidMesh, with the first defect, where that refuses it. May be
 /// called without Python's lock.
