@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "dartcast/mesh_data.hpp"
 
@@ -14,7 +15,7 @@ namespace dartcast {
 struct BoxOptions {
   std::array<std::uint32_t, 3> cells = {1, 1, 1};  ///< cubes along x, y and z
   Vec3 origin = {0.0, 0.0, 0.0};                   ///< the lowest corner
-  Vec3 size = {1.0, 1.0, 1.0};                     ///< edge lengths of the whole box
+  std::optional<Vec3> size = {};                   ///< edge lengths of the whole box; none: cubes of edge 1
   CellType type = CellType::hexahedron;            ///< each cube is 1 hexahedron, 6 tetrahedra, 2 prisms or 6 pyramids
   bool mixed = false;          ///< instead of `type`: each cube cut at random, all four types, still conforming
   bool blocked_layer = false;  ///< the outermost cubes are blocked
@@ -47,10 +48,10 @@ MeshData generate_bar();
 struct OctahedraOptions {
   std::array<std::uint32_t, 3> cells = {1, 1, 1};  ///< cubes of the packing's lattice; two octahedra in each
   Vec3 origin = {0.0, 0.0, 0.0};
-  Vec3 size = {1.0, 1.0, 1.0};  ///< edge lengths of the lattice: cells cubes of size / cells
-  bool blocked_layer = false;   ///< the octahedra at the block's boundary are blocked
-  double blocked_share = 0.0;   ///< share of the others (rounded to whole cells) that is blocked at random
-  std::uint64_t seed = 1;       ///< for all that is random: the same seed gives the same bits everywhere
+  std::optional<Vec3> size = {};  ///< edge lengths of the lattice: cells cubes of size / cells; none: of edge 1
+  bool blocked_layer = false;     ///< the octahedra at the block's boundary are blocked
+  double blocked_share = 0.0;     ///< share of the others (rounded to whole cells) that is blocked at random
+  std::uint64_t seed = 1;         ///< for all that is random: the same seed gives the same bits everywhere
 };
 
 /// A conforming mesh of 2 nx ny nz polyhedra, each with 8 hexagons and 6 squares: the body-centred cubic packing. Cube
@@ -137,11 +138,11 @@ MeshData generate_barrel(const BarrelOptions& options = {});
 
 /// Options of generate_rectangle().
 struct RectangleOptions {
-  std::array<std::uint32_t, 2> cells = {1, 1};  ///< squares along x and y
-  std::array<double, 2> origin = {0.0, 0.0};    ///< the lowest corner
-  std::array<double, 2> size = {1.0, 1.0};      ///< edge lengths of the whole rectangle
-  CellType type = CellType::quadrilateral;      ///< each square is 1 quadrilateral or 2 triangles; or see below
-  bool mixed = false;                           ///< instead of `type`: all three at random, still conforming
+  std::array<std::uint32_t, 2> cells = {1, 1};     ///< squares along x and y
+  std::array<double, 2> origin = {0.0, 0.0};       ///< the lowest corner
+  std::optional<std::array<double, 2>> size = {};  ///< edge lengths of the whole rectangle; none: squares of edge 1
+  CellType type = CellType::quadrilateral;         ///< each square is 1 quadrilateral or 2 triangles; or see below
+  bool mixed = false;                              ///< instead of `type`: all three at random, still conforming
   double blocked_share = 0.0;  ///< this share of the squares (rounded to whole squares) is blocked at random
   double jitter = 0.0;         ///< inner lattice points move by up to jitter / 2 square edges along each axis
   std::uint64_t seed = 1;      ///< for all that is random: the same seed gives the same bits everywhere
@@ -177,9 +178,9 @@ struct MazeOptions {
   std::uint32_t obstacles = 4;                  ///< squares blocked in each room; fewer if more would cut it
   double extra_doors =
       0.1;  ///< share (rounded down) of the walls without a door that get one although no room needs it
-  std::array<double, 2> origin = {0.0, 0.0};  ///< the lowest corner
-  std::array<double, 2> size = {1.0, 1.0};    ///< edge lengths of the whole maze
-  CellType type = CellType::quadrilateral;    ///< cells, as in RectangleOptions
+  std::array<double, 2> origin = {0.0, 0.0};       ///< the lowest corner
+  std::optional<std::array<double, 2>> size = {};  ///< edge lengths of the whole maze; none: squares of edge 1
+  CellType type = CellType::quadrilateral;         ///< cells, as in RectangleOptions
   bool mixed = false;
   double jitter = 0.0;     ///< as in RectangleOptions, with its bounds
   std::uint64_t seed = 1;  ///< for all that is random: the same seed gives the same bits everywhere

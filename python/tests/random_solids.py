@@ -129,8 +129,8 @@ class BodyCalls:
         self.make()
 
     def make(self) -> None:
-        self.environment = dc.Environment(dc.generate_box(cells=[3, 3, 3], jitter=0.1), threads=2)
-        options = dc.records.BodiesOptions(dt=1e-2, gravity=[0.0, 0.0, -9.81], collisions=dc.records.BodyCollisionOptions())
+        self.environment = dc.Environment(dc.generate_box(cells=[3, 3, 3], size=[1.0, 1.0, 1.0], jitter=0.1), threads=2)
+        options = dc.BodiesOptions(dt=1e-2, gravity=[0.0, 0.0, -9.81], collisions=dc.records.BodyCollisionOptions())
         self.bodies = dc.Bodies(self.environment, options, {"zmin": dc.Slide()})
         self.saved = self.bodies.checkpoint()
 
@@ -248,7 +248,7 @@ class SimulationCalls:
         collisions = dc.CollisionOptions() if self.random.uniform() < 0.5 else None
         options = dc.SimulationOptions(dt=0.01, gravity=[0, 0, -9.81], response=dc.Reflect(0.7), collisions=collisions,
                                        patch_responses={"xmax": dc.Escape(), "xmin": dc.Slide()}, user_data=["heat"])
-        self.simulation = dc.Simulation(dc.Environment(dc.generate_box(cells=[3, 3, 3]), threads=2), options)
+        self.simulation = dc.Simulation(dc.Environment(dc.generate_box(cells=[3, 3, 3], size=[1.0, 1.0, 1.0]), threads=2), options)
         statistics = dc.StatisticsOptions(hits=True, residence=True, pathlines_every=3)
         statistics.planes = [dc.records.SectionPlane("middle", [0.5, 0.5, 0.5], [1.0, 0.0, 0.0])]
         self.simulation.set_statistics(statistics)

@@ -11,7 +11,7 @@ UP = np.array([0.0, 0.0, 1.0])
 
 
 def scene(count=50, threads=1, n=3):
-    env = dartcast.Environment(dartcast.generate_box(cells=[n, n, n]), threads=threads)
+    env = dartcast.Environment(dartcast.generate_box(cells=[n, n, n], size=[1.0, 1.0, 1.0]), threads=threads)
     return env, env.add_random(count, seed=5)
 
 

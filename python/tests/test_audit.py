@@ -9,7 +9,7 @@ import pytest
 
 
 def scene():
-    env = dartcast.Environment(dartcast.generate_box(cells=[2, 2, 2]), threads=1)
+    env = dartcast.Environment(dartcast.generate_box(cells=[2, 2, 2], size=[1.0, 1.0, 1.0]), threads=1)
     return env, env.add_random(100)
 
 

@@ -9,7 +9,7 @@ import pytest
 
 
 def box(**options):
-    return dartcast.topology.CellComplex(dartcast.generate_box(cells=[2, 2, 2], **options))
+    return dartcast.topology.CellComplex(dartcast.generate_box(cells=[2, 2, 2], size=[1.0, 1.0, 1.0], **options))
 
 
 def first(complex):
@@ -17,7 +17,7 @@ def first(complex):
 
 
 def test_sizes_and_positions():
-    mesh = dartcast.generate_box(cells=[2, 2, 2])
+    mesh = dartcast.generate_box(cells=[2, 2, 2], size=[1.0, 1.0, 1.0])
     c = dartcast.topology.CellComplex(mesh, threads=1)
     assert c.point_count == 27 and c.simplex_count == 8 * 6 and c.steiner_point_count == 0
     assert c.invalid_cells == [] and c.bytes > 0

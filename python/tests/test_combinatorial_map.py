@@ -11,7 +11,7 @@ CellFace, Dart = dartcast.topology.CellFace, dartcast.topology.Dart
 
 
 def box_map(**options):
-    return dartcast.topology.CombinatorialMap(dartcast.generate_box(cells=[2, 2, 2], **options))
+    return dartcast.topology.CombinatorialMap(dartcast.generate_box(cells=[2, 2, 2], size=[1.0, 1.0, 1.0], **options))
 
 
 def all_darts(m):
@@ -167,7 +167,7 @@ def test_the_map_of_a_complex_is_only_read():
 
 
 def test_planar_maps():
-    m = dartcast.topology.CombinatorialMap(dartcast.generate_rectangle(cells=[3, 2], mixed=True))
+    m = dartcast.topology.CombinatorialMap(dartcast.generate_rectangle(cells=[3, 2], size=[1.0, 1.0], mixed=True))
     assert m.dimension == 2
     for d in all_darts(m):
         assert m.phi3(d) is None

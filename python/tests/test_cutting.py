@@ -203,7 +203,7 @@ def test_ends_are_refused():
 
 
 def test_planar_complexes_are_not_cut():
-    c = dartcast.topology.CellComplex(dartcast.generate_rectangle(cells=[2, 2]))
+    c = dartcast.topology.CellComplex(dartcast.generate_rectangle(cells=[2, 2], size=[1.0, 1.0]))
     with dartcast.topology.ComplexEdit(c) as edit:
         with pytest.raises(dartcast.InvalidArgument, match="cells of space"):
             dartcast.topology.split_by_plane(edit, edit.map.cells(), dartcast.topology.plane_through([0.3, 0, 0], [1, 0, 0]))

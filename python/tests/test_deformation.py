@@ -25,7 +25,7 @@ def test_a_turn_is_a_rotation():
 
 
 def test_positions_go_into_an_environment():
-    env = dartcast.Environment(dartcast.generate_box(cells=[2, 2, 2]), threads=1)
+    env = dartcast.Environment(dartcast.generate_box(cells=[2, 2, 2], size=[1.0, 1.0, 1.0]), threads=1)
     step = dartcast.DeformationStep(kind="twist", amplitude=0.2)
     d = dartcast.Deformation([step], env.positions)
     with env.next_points() as x:

@@ -9,7 +9,7 @@ import pytest
 
 
 def box(n=2, **options):
-    return dartcast.Environment(dartcast.generate_box(cells=[n, n, n], **options), threads=1)
+    return dartcast.Environment(dartcast.generate_box(cells=[n, n, n], size=[1.0, 1.0, 1.0], **options), threads=1)
 
 
 def centred(env):

@@ -29,7 +29,7 @@ def test_options_by_name_or_as_a_record():
 
 @pytest.mark.parametrize("kind, count", [("hexahedron", 1), ("tetrahedron", 6), ("prism", 2), ("pyramid", 6)])
 def test_cubes_are_cut(kind, count):
-    assert dartcast.generate_box(cells=[2, 2, 2], type=kind).cell_count == 8 * count
+    assert dartcast.generate_box(cells=[2, 2, 2], size=[1.0, 1.0, 1.0], type=kind).cell_count == 8 * count
 
 
 def test_the_bar_is_that_of_its_options():
@@ -39,7 +39,7 @@ def test_the_bar_is_that_of_its_options():
 
 
 @pytest.mark.parametrize("mesh", [
-    dartcast.generate_octahedra(cells=[2, 1, 1]), dartcast.generate_rectangle(cells=[5, 4], type="polygon"),
+    dartcast.generate_octahedra(cells=[2, 1, 1], size=[1.0, 1.0, 1.0]), dartcast.generate_rectangle(cells=[5, 4], size=[1.0, 1.0], type="polygon"),
     dartcast.generate_maze(rooms=[2, 2], obstacles=1),
     dartcast.generate_vessel(core=2, rings=1, tissue_layers=1, step_length=1.5e-3)])
 def test_generated_meshes_are_accepted(mesh):
@@ -76,7 +76,7 @@ def test_rings_are_decomposed():
 
 
 def test_regions_are_selected():
-    mesh = dartcast.generate_box(cells=[2, 1, 1])
+    mesh = dartcast.generate_box(cells=[2, 1, 1], size=[1.0, 1.0, 1.0])
     mesh.regions = [1, 2]
     mesh.region_names = {2: "lumen"}
     dartcast.formats.select_free_regions(mesh, ["lumen"])
@@ -89,7 +89,7 @@ def test_regions_are_selected():
 
 
 def test_values_are_selected():
-    mesh = dartcast.generate_box(cells=[3, 1, 1])
+    mesh = dartcast.generate_box(cells=[3, 1, 1], size=[1.0, 1.0, 1.0])
     mesh.cell_data = {"kind": [5, 6, 7]}
     dartcast.formats.select_free_values(mesh, "kind", [5, 7.0])
     assert list(mesh.free) == [1, 0, 1]
@@ -98,7 +98,7 @@ def test_values_are_selected():
 
 
 def test_patches_are_selected_and_made():
-    mesh = dartcast.generate_box(cells=[2, 2, 2])
+    mesh = dartcast.generate_box(cells=[2, 2, 2], size=[1.0, 1.0, 1.0])
     dartcast.formats.select_patches(mesh, ["xmin"])
     assert len(mesh.patch_tags) == 4 and set(mesh.patch_names[t] for t in mesh.patch_tags) == {"xmin"}
     dartcast.formats.divide_walls(mesh, 30.0)

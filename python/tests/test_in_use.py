@@ -30,7 +30,7 @@ def refused_while(run: Callable[[Callable[[], None]], object], use: Callable[[],
 
 
 def box() -> dartcast.Environment:
-    return dartcast.Environment(dartcast.generate_box(cells=[2, 2, 2]))
+    return dartcast.Environment(dartcast.generate_box(cells=[2, 2, 2], size=[1.0, 1.0, 1.0]))
 
 
 def once(call: Callable[[], None]) -> Callable[..., None]:
@@ -126,7 +126,7 @@ def test_bodies_and_a_catheter() -> None:
 
 def test_two_threads_in_long_calls() -> None:
     """Two threads step one simulation as fast as they can: each step is whole, or refused."""
-    simulation = dartcast.Simulation(dartcast.Environment(dartcast.generate_box(cells=[4, 4, 4])),
+    simulation = dartcast.Simulation(dartcast.Environment(dartcast.generate_box(cells=[4, 4, 4], size=[1.0, 1.0, 1.0])),
                                      dartcast.SimulationOptions(dt=0.1))
     simulation.add_random(2000, [1.0, 2.0, 3.0])
     done, refused = [0, 0], [0, 0]

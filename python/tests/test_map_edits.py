@@ -12,7 +12,7 @@ Dart, CellFace = dartcast.topology.Dart, dartcast.topology.CellFace
 
 
 def box_map(**options):
-    m = dartcast.topology.CombinatorialMap(dartcast.generate_box(cells=[2, 2, 2], **options))
+    m = dartcast.topology.CombinatorialMap(dartcast.generate_box(cells=[2, 2, 2], size=[1.0, 1.0, 1.0], **options))
     dartcast.topology.Transaction(m)  # the first one on a map counts the cells of each vertex
     return m
 
@@ -329,7 +329,7 @@ def test_orbits():
 
 
 def test_polygons_are_split_and_merged():
-    m = dartcast.topology.CombinatorialMap(dartcast.generate_rectangle(cells=[2, 2]))
+    m = dartcast.topology.CombinatorialMap(dartcast.generate_rectangle(cells=[2, 2], size=[1.0, 1.0]))
     with dartcast.topology.Transaction(m) as t:
         c = int(t.map.cells()[0])
         one, two = dartcast.topology.split_face(t, (c, 0), (c, 2))

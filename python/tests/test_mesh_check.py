@@ -7,7 +7,7 @@ import pytest
 
 
 def test_a_good_mesh_is_accepted():
-    report = dartcast.check_and_repair(dartcast.generate_box(cells=[2, 3, 4]))
+    report = dartcast.check_and_repair(dartcast.generate_box(cells=[2, 3, 4], size=[1.0, 1.0, 1.0]))
     assert report.valid and report.verdict is dartcast.formats.Verdict.ACCEPT
     assert report.cells == {"hexahedron": 24} and report.points == 3 * 4 * 5 and report.parts == 1
 

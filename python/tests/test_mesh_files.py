@@ -13,7 +13,7 @@ TETRAHEDRON = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3
 
 
 def mixed_box():
-    return dartcast.generate_box(cells=[2, 2, 2], mixed=True, blocked_layer=False, seed=3)
+    return dartcast.generate_box(cells=[2, 2, 2], size=[1.0, 1.0, 1.0], mixed=True, blocked_layer=False, seed=3)
 
 
 @pytest.mark.parametrize("ending", sorted(set(dartcast.formats.mesh_endings()) & set(dartcast.formats.writable_mesh_endings())))
@@ -30,7 +30,7 @@ def test_a_written_mesh_is_read_back(tmp_path, ending):
 
 @pytest.mark.parametrize("ending", ["vtu", "vtk"])
 def test_free_cells_are_read_back(tmp_path, ending):
-    mesh = dartcast.generate_box(cells=[3, 3, 3], blocked_layer=True)
+    mesh = dartcast.generate_box(cells=[3, 3, 3], size=[1.0, 1.0, 1.0], blocked_layer=True)
     assert sum(mesh.free) == 1
     dartcast.write_mesh(mesh, tmp_path / f"box.{ending}")
     back, _ = dartcast.read_mesh(tmp_path / f"box.{ending}")
@@ -38,7 +38,7 @@ def test_free_cells_are_read_back(tmp_path, ending):
 
 
 def test_a_meshb_of_meshio_is_read(tmp_path):
-    mesh = dartcast.generate_box(cells=[3, 2, 2], type="tetrahedron")
+    mesh = dartcast.generate_box(cells=[3, 2, 2], size=[1.0, 1.0, 1.0], type="tetrahedron")
     path = tmp_path / "box.meshb"
     meshio.write(path, meshio.Mesh(mesh.points, [("tetra", mesh.cells["tetra"])]))
     back, report = dartcast.read_mesh(path)
@@ -47,7 +47,7 @@ def test_a_meshb_of_meshio_is_read(tmp_path):
 
 
 def test_files_of_tetgen_are_read(tmp_path):
-    mesh = dartcast.generate_box(cells=[3, 2, 2], type="tetrahedron")
+    mesh = dartcast.generate_box(cells=[3, 2, 2], size=[1.0, 1.0, 1.0], type="tetrahedron")
     meshio.write(tmp_path / "box.node", meshio.Mesh(mesh.points, [("tetra", mesh.cells["tetra"])]))
     for ending in ("node", "ele"):
         back, report = dartcast.read_mesh(tmp_path / f"box.{ending}")
@@ -185,7 +185,7 @@ def test_a_mesh_from_meshio_is_that_of_the_own_reader(tmp_path, ending):
 
 def test_patches_and_regions_come_from_gmsh(tmp_path):
     path = tmp_path / "box.msh"
-    mesh = dartcast.generate_box(cells=[2, 2, 2])
+    mesh = dartcast.generate_box(cells=[2, 2, 2], size=[1.0, 1.0, 1.0])
     mesh.regions = [1, 2] * 4
     mesh.region_names = {1: "left", 2: "right"}
     dartcast.write_mesh(mesh, path)
@@ -222,7 +222,7 @@ def test_polyhedra_go_through_meshio():
 
 
 def test_a_planar_mesh_goes_through_meshio():
-    mesh = dartcast.generate_rectangle(cells=[4, 4], mixed=True)
+    mesh = dartcast.generate_rectangle(cells=[4, 4], size=[1.0, 1.0], mixed=True)
     back = dartcast.from_meshio(dartcast.to_meshio(mesh))
     assert {n: len(c) for n, c in back.cells.items()} == {n: len(c) for n, c in mesh.cells.items()}
     assert len(back.patch_tags) == len(mesh.patch_tags) == 16

@@ -7,7 +7,7 @@ import pytest
 
 
 def test_a_plan_counts_the_parts_of_a_run():
-    mesh = dartcast.generate_box(cells=[8, 8, 8])
+    mesh = dartcast.generate_box(cells=[8, 8, 8], size=[1.0, 1.0, 1.0])
     plan = dartcast.formats.plan_run(mesh, dartcast.formats.PlanOptions(ranks=4, particles=100.0, samples=1))
     owners = dartcast.formats.partition(mesh, 4)
     ghosts = [len(dartcast.formats.mesh_part(mesh, owners, 4, p).cells) - np.count_nonzero(owners == p) for p in range(4)]
@@ -17,13 +17,13 @@ def test_a_plan_counts_the_parts_of_a_run():
 
 
 def test_a_plan_refuses_what_is_out_of_range():
-    box = dartcast.generate_box(cells=[2, 2, 2])
+    box = dartcast.generate_box(cells=[2, 2, 2], size=[1.0, 1.0, 1.0])
     with pytest.raises(dartcast.InvalidArgument, match="latency"):
         dartcast.formats.plan_run(box, dartcast.formats.PlanOptions(latency=2.0))
     with pytest.raises(dartcast.InvalidArgument):
         dartcast.formats.plan_run(box, dartcast.formats.PlanOptions(ranks=9))
     with pytest.raises(dartcast.InvalidArgument, match="plane"):
-        dartcast.formats.plan_run(dartcast.generate_rectangle(cells=[4, 4]), dartcast.formats.PlanOptions())
+        dartcast.formats.plan_run(dartcast.generate_rectangle(cells=[4, 4], size=[1.0, 1.0]), dartcast.formats.PlanOptions())
     flat = dartcast.MeshData(np.eye(4, 3) * [1.0, 1.0, 0.0], {"tetra": [[0, 1, 2, 3]]})
     with pytest.raises(dartcast.InvalidMesh):
         dartcast.formats.plan_run(flat, dartcast.formats.PlanOptions())

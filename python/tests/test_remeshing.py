@@ -9,7 +9,7 @@ import pytest
 
 
 def box(n=2):
-    c = dartcast.topology.CellComplex(dartcast.generate_box(cells=[n, n, n]))
+    c = dartcast.topology.CellComplex(dartcast.generate_box(cells=[n, n, n], size=[1.0, 1.0, 1.0]))
     dartcast.topology.ComplexEdit(c)  # the first edit of a map counts the cells of each vertex
     return c
 

@@ -11,7 +11,7 @@ DT = 0.5
 
 def scene(patch="zmax"):
     """One particle that meets the wall z = 1 after half of its way, and its velocity."""
-    env = dartcast.Environment(dartcast.generate_box(cells=[2, 2, 2]), threads=1)
+    env = dartcast.Environment(dartcast.generate_box(cells=[2, 2, 2], size=[1.0, 1.0, 1.0]), threads=1)
     parts, _ = env.add(np.array([[0.3, 0.3, 0.9]]))
     return env, parts, np.array([[0.2, 0.0, 0.4]])
 

@@ -243,7 +243,7 @@ def test_events_that_cannot_happen_name_themselves() -> None:
 
 
 def test_crowded_cells_are_subdivided_and_merged() -> None:
-    simulation = dartcast.Simulation(dartcast.Environment(dartcast.generate_box(cells=[2, 2, 2])),
+    simulation = dartcast.Simulation(dartcast.Environment(dartcast.generate_box(cells=[2, 2, 2], size=[1.0, 1.0, 1.0])),
                                      dartcast.SimulationOptions(dt=0.1))
     simulation.add(np.random.default_rng(1).uniform(0.01, 0.49, (60, 3)), [0.0, 0.0, 0.0])
     simulation.set_adaptive_subdivision(dartcast.formats.AdaptiveSubdivisionScene(
@@ -254,7 +254,7 @@ def test_crowded_cells_are_subdivided_and_merged() -> None:
 
 
 def test_cells_that_a_motion_inverts_are_repaired() -> None:
-    environment = dartcast.Environment(dartcast.generate_box(cells=[2, 2, 2]))
+    environment = dartcast.Environment(dartcast.generate_box(cells=[2, 2, 2], size=[1.0, 1.0, 1.0]))
     simulation = dartcast.Simulation(environment, dartcast.SimulationOptions(dt=0.1))
     simulation.add_random(40, [0.5, 0.25, 0.125])
     assert not simulation.repair().mended

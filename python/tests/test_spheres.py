@@ -7,7 +7,7 @@ import pytest
 
 
 def scene(z=0.5):
-    env = dartcast.Environment(dartcast.generate_box(cells=[2, 2, 2]), threads=1)
+    env = dartcast.Environment(dartcast.generate_box(cells=[2, 2, 2], size=[1.0, 1.0, 1.0]), threads=1)
     parts, _ = env.add(np.array([[0.3, 0.35, z]]))
     return env, parts
 

@@ -10,7 +10,7 @@ import pytest
 
 
 def scene():
-    env = dartcast.Environment(dartcast.generate_rectangle(cells=[4, 4]), threads=1)
+    env = dartcast.Environment(dartcast.generate_rectangle(cells=[4, 4], size=[1.0, 1.0]), threads=1)
     parts, _ = env.add(np.array([[0.1, 0.15, 0.0]]))
     targets = np.array([[0.8, 0.85, 0.0], [1.4, 0.85, 0.0]])
     return env, parts, env.trace(parts, 0, targets)

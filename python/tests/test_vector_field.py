@@ -7,7 +7,7 @@ import pytest
 
 
 def scene():
-    return dartcast.Environment(dartcast.generate_box(cells=[2, 2, 2], type="tetrahedron"), threads=1)
+    return dartcast.Environment(dartcast.generate_box(cells=[2, 2, 2], size=[1.0, 1.0, 1.0], type="tetrahedron"), threads=1)
 
 
 def at(field, env, x, moment=0):

@@ -27,7 +27,7 @@ def best(call: Callable[[], object], repeats: int, rounds: int = 7) -> float:
 
 
 def scene(count: int) -> tuple[dartcast.Environment, dartcast.Particles]:
-    env = dartcast.Environment(dartcast.generate_box(cells=[16, 16, 16]), threads=1)
+    env = dartcast.Environment(dartcast.generate_box(cells=[16, 16, 16], size=[1.0, 1.0, 1.0]), threads=1)
     return env, env.add_random(count, seed=1)
 
 

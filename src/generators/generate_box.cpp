@@ -8,6 +8,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/ids.hpp"
+#include "generators/block_size.hpp"
 #include "generators/box_window.hpp"
 #include "generators/generate_blocked.hpp"
 #include "mesh/cell_types.hpp"
@@ -60,11 +61,11 @@ void check(const BoxOptions& o) {
   for (const std::uint32_t n : o.cells) {
     if (n == 0) throw InvalidArgument("box: no cells along an axis; give at least 1 along each");
   }
-  if (!is_finite(o.origin) || !is_finite(o.size) || !is_finite(o.origin + o.size)) {
+  const Vec3 size = block_size(o);
+  if (!is_finite(o.origin) || !is_finite(size) || !is_finite(o.origin + size)) {
     throw InvalidArgument("box: origin and size must be finite numbers");
   }
-  if (!(o.size.x > 0 && o.size.y > 0 && o.size.z > 0))
-    throw InvalidArgument("box: size must be positive along each axis");
+  if (!(size.x > 0 && size.y > 0 && size.z > 0)) throw InvalidArgument("box: size must be positive along each axis");
   if (!(o.blocked_share >= 0 && o.blocked_share <= 1)) throw InvalidArgument("box: blocked_share must be in [0, 1]");
   if (!(o.jitter >= 0 && o.jitter <= 1)) throw InvalidArgument("box: jitter must be in [0, 1]");
   if (o.type == CellType::polyhedron) {
@@ -84,7 +85,8 @@ void check(const BoxOptions& o) {
 // Lattice, patterns and marks of the cubes of one box in a window while they are built.
 class BoxBuilder {
  public:
-  BoxBuilder(const BoxOptions& options, const BoxWindow& window) : o_(options), n_(options.cells), w_(window) {
+  BoxBuilder(const BoxOptions& options, const BoxWindow& window)
+      : o_(options), size_(block_size(options)), n_(options.cells), w_(window) {
     cubes_ = window.cubes();
     for (unsigned cut = 0; cut <= all_sides; ++cut) middle_patterns_.push_back(from_middle(cut));
   }
@@ -133,16 +135,16 @@ class BoxBuilder {
 
   // The lattice's inner points have three random numbers each, in their order.
   [[nodiscard]] Vec3 lattice_point(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
-    const Vec3 p = {coordinate(o_.origin.x, o_.size.x, i, n_[0]), coordinate(o_.origin.y, o_.size.y, j, n_[1]),
-                    coordinate(o_.origin.z, o_.size.z, k, n_[2])};
+    const Vec3 p = {coordinate(o_.origin.x, size_.x, i, n_[0]), coordinate(o_.origin.y, size_.y, j, n_[1]),
+                    coordinate(o_.origin.z, size_.z, k, n_[2])};
     const bool inner = i > 0 && j > 0 && k > 0 && i < n_[0] && j < n_[1] && k < n_[2];
     if (!inner || o_.jitter == 0) return p;
     Random random(o_.seed, 1);
     random.skip(3 * (i - 1 + std::uint64_t{n_[0] - 1} * (j - 1 + std::uint64_t{n_[1] - 1} * (k - 1))));
     const auto shift = [&](double edge) { return o_.jitter * (random.uniform() - 0.5) * edge; };
-    const double dx = shift(o_.size.x / n_[0]);
-    const double dy = shift(o_.size.y / n_[1]);
-    const double dz = shift(o_.size.z / n_[2]);
+    const double dx = shift(size_.x / n_[0]);
+    const double dy = shift(size_.y / n_[1]);
+    const double dz = shift(size_.z / n_[2]);
     return {p.x + dx, p.y + dy, p.z + dz};
   }
 
@@ -241,6 +243,7 @@ class BoxBuilder {
   }
 
   const BoxOptions& o_;
+  const Vec3 size_;
   const std::array<std::uint32_t, 3> n_;
   const BoxWindow w_;
   std::size_t cubes_ = 0;
@@ -265,7 +268,6 @@ std::uint32_t cells_per_cube(CellType type) {
 BoxOptions bar_options() {
   BoxOptions options;
   options.cells = {5, 5, 28};
-  options.size = {5.0, 5.0, 28.0};
   options.blocked_layer = true;
   return options;
 }

@@ -8,6 +8,7 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/ids.hpp"
+#include "generators/block_size.hpp"
 #include "generators/generate_blocked.hpp"
 
 namespace dartcast {
@@ -85,10 +86,11 @@ void check(const OctahedraOptions& o) {
         fmt::format("octahedra: {} x {} x {} cubes of 2 cells are more than the {} cells a mesh may have", o.cells[0],
                     o.cells[1], o.cells[2], Cell::index_mask));
   }
-  if (!is_finite(o.origin) || !is_finite(o.size) || !is_finite(o.origin + o.size * 2.0)) {
+  const Vec3 size = block_size(o);
+  if (!is_finite(o.origin) || !is_finite(size) || !is_finite(o.origin + size * 2.0)) {
     throw InvalidArgument("octahedra: origin and size must be finite numbers");
   }
-  if (!(o.size.x > 0 && o.size.y > 0 && o.size.z > 0)) {
+  if (!(size.x > 0 && size.y > 0 && size.z > 0)) {
     throw InvalidArgument("octahedra: size must be positive along each axis");
   }
   if (!(o.blocked_share >= 0 && o.blocked_share <= 1)) {
@@ -98,7 +100,8 @@ void check(const OctahedraOptions& o) {
 
 class OctahedraBuilder {
  public:
-  explicit OctahedraBuilder(const OctahedraOptions& options) : o_(options), faces_(make_faces()) {
+  explicit OctahedraBuilder(const OctahedraOptions& options)
+      : o_(options), size_(block_size(options)), faces_(make_faces()) {
     for (std::size_t a = 0; a < 3; ++a) n_[a] = static_cast<int>(o_.cells[a]);
     numbers_.assign(std::size_t{4 * o_.cells[0] + 3} * (4 * o_.cells[1] + 3) * (4 * o_.cells[2] + 3), none);
   }
@@ -138,9 +141,9 @@ class OctahedraBuilder {
     std::uint32_t& number = numbers_[index(0) + extent(0) * (index(1) + extent(1) * index(2))];
     if (number == none) {
       number = static_cast<std::uint32_t>(mesh_.points.size());
-      mesh_.points.push_back({o_.origin.x + o_.size.x * p[0] / (4.0 * n_[0]),
-                              o_.origin.y + o_.size.y * p[1] / (4.0 * n_[1]),
-                              o_.origin.z + o_.size.z * p[2] / (4.0 * n_[2])});
+      mesh_.points.push_back({o_.origin.x + size_.x * p[0] / (4.0 * n_[0]),
+                              o_.origin.y + size_.y * p[1] / (4.0 * n_[1]),
+                              o_.origin.z + size_.z * p[2] / (4.0 * n_[2])});
     }
     return number;
   }
@@ -160,6 +163,7 @@ class OctahedraBuilder {
   }
 
   const OctahedraOptions& o_;
+  const Vec3 size_;
   const std::vector<Face> faces_;
   std::array<int, 3> n_{};
   std::vector<std::uint32_t> numbers_;  // point at each lattice place, or none

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -16,11 +17,15 @@ namespace {
 
 constexpr std::uint32_t merged = 0xffffffffU;
 
+std::array<double, 2> size_of(const RectangleOptions& o) {
+  return o.size.value_or(std::array{static_cast<double>(o.cells[0]), static_cast<double>(o.cells[1])});
+}
+
 // Lattice, cuts and marks of one rectangle while it is built.
 class SquaresBuilder {
  public:
   SquaresBuilder(const RectangleOptions& options, std::span<const std::uint8_t> blocked)
-      : o_(options), nx_(options.cells[0]), ny_(options.cells[1]), blocked_(blocked) {}
+      : o_(options), size_(size_of(options)), nx_(options.cells[0]), ny_(options.cells[1]), blocked_(blocked) {}
 
   MeshData build() {
     choose_merges();
@@ -76,10 +81,10 @@ class SquaresBuilder {
     const auto shift = [&](double edge) { return o_.jitter * (random.uniform() - 0.5) * edge; };
     for (std::uint32_t j = 0; j <= ny_; ++j) {
       for (std::uint32_t i = 0; i <= nx_; ++i) {
-        Vec3 p = {coordinate(o_.origin[0], o_.size[0], i, nx_), coordinate(o_.origin[1], o_.size[1], j, ny_), 0.0};
+        Vec3 p = {coordinate(o_.origin[0], size_[0], i, nx_), coordinate(o_.origin[1], size_[1], j, ny_), 0.0};
         if (i > 0 && j > 0 && i < nx_ && j < ny_ && o_.jitter > 0) {
-          p.x += shift(o_.size[0] / nx_);
-          p.y += shift(o_.size[1] / ny_);
+          p.x += shift(size_[0] / nx_);
+          p.y += shift(size_[1] / ny_);
         }
         if (point(i, j) == merged) continue;
         point(i, j) = static_cast<std::uint32_t>(mesh_.points.size());
@@ -124,6 +129,7 @@ class SquaresBuilder {
   }
 
   const RectangleOptions& o_;
+  const std::array<double, 2> size_;
   const std::uint32_t nx_, ny_;
   const std::span<const std::uint8_t> blocked_;
   std::vector<std::uint32_t> number_;  // per point of the lattice: in the mesh; merged: left out
@@ -139,10 +145,11 @@ MeshData generate_squares(const RectangleOptions& options, std::span<const std::
 void check_squares(const RectangleOptions& o, const char* generator) {
   const auto refuse = [&](const std::string& why) { throw InvalidArgument(fmt::format("{}: {}", generator, why)); };
   if (o.cells[0] == 0 || o.cells[1] == 0) refuse("no cells along an axis; give at least 1 along each");
+  const std::array<double, 2> size = size_of(o);
   for (std::size_t a = 0; a < 2; ++a) {
-    if (!std::isfinite(o.origin[a]) || !std::isfinite(o.size[a]) || !std::isfinite(o.origin[a] + o.size[a]))
+    if (!std::isfinite(o.origin[a]) || !std::isfinite(size[a]) || !std::isfinite(o.origin[a] + size[a]))
       refuse("origin and size must be finite numbers");
-    if (!(o.size[a] > 0)) refuse("size must be positive along each axis");
+    if (!(size[a] > 0)) refuse("size must be positive along each axis");
   }
   if (!(o.blocked_share >= 0 && o.blocked_share <= 1)) refuse("blocked_share must be in [0, 1]");
   if (!o.mixed && dimension(o.type) != 2) refuse("cells of space; take triangles, quadrilaterals or polygons");

@@ -26,14 +26,15 @@ void get_counts(TomlTable& t, std::string_view key, std::array<std::uint32_t, n>
 
 void get_seed(TomlTable& t, std::uint64_t& seed) { t.get("seed", seed, 0, max_seed); }
 
-// The keys that the box and the octahedra share. Cells are of unit size unless `size` is given.
+// The keys that the box and the octahedra share.
 template <class Options>
 void read_block(TomlTable& t, Options& o) {
   get_counts(t, "cells", o.cells);
-  o.size = {static_cast<double>(o.cells[0]), static_cast<double>(o.cells[1]), static_cast<double>(o.cells[2])};
   t.get("origin", o.origin);
-  t.get("size", o.size);
-  if (!(o.size.x > 0.0 && o.size.y > 0.0 && o.size.z > 0.0)) t.fail("size", "size must be three numbers more than 0");
+  Vec3 size;
+  if (t.get("size", size)) o.size = size;
+  if (o.size && !(size.x > 0.0 && size.y > 0.0 && size.z > 0.0))
+    t.fail("size", "size must be three numbers more than 0");
   t.get("blocked_layer", o.blocked_layer);
   t.get("blocked_share", o.blocked_share, share);
   get_seed(t, o.seed);
@@ -79,17 +80,15 @@ VesselOptions read_vessel(TomlTable& t) {
   return o;
 }
 
-// The keys that the rectangle and the maze share. Squares are of unit size unless `size` is given.
+// The keys that the rectangle and the maze share.
 template <class Options>
-void read_squares(TomlTable& t, Options& o, const std::array<std::uint32_t, 2>& squares) {
-  const auto get_pair = [&](std::string_view key, std::array<double, 2>& pair) {
-    std::vector<double> list;
-    if (t.get(key, list, 2)) pair = {list[0], list[1]};
-  };
-  o.size = {static_cast<double>(squares[0]), static_cast<double>(squares[1])};
-  get_pair("origin", o.origin);
-  get_pair("size", o.size);
-  if (!(o.size[0] > 0.0 && o.size[1] > 0.0)) t.fail("size", "size must be two numbers more than 0");
+void read_squares(TomlTable& t, Options& o) {
+  std::vector<double> list;
+  if (t.get("origin", list, 2)) o.origin = {list[0], list[1]};
+  if (t.get("size", list, 2)) {
+    if (!(list[0] > 0.0 && list[1] > 0.0)) t.fail("size", "size must be two numbers more than 0");
+    o.size = std::array{list[0], list[1]};
+  }
   std::optional<CellType> type = CellType::quadrilateral;
   t.get("type", type,
         {{"triangle", CellType::triangle},
@@ -106,7 +105,7 @@ void read_squares(TomlTable& t, Options& o, const std::array<std::uint32_t, 2>& 
 RectangleOptions read_rectangle(TomlTable& t) {
   RectangleOptions o;
   get_counts(t, "cells", o.cells);
-  read_squares(t, o, o.cells);
+  read_squares(t, o);
   t.get("blocked_share", o.blocked_share, share);
   return o;
 }
@@ -122,7 +121,7 @@ MazeOptions read_maze(TomlTable& t) {
   for (const std::uint32_t n : o.rooms) {
     if (n > 0x1p29 / pitch) t.fail("rooms", "rooms and walls must be at most 2^29 squares along each axis");
   }
-  read_squares(t, o, {o.rooms[0] * pitch - 1, o.rooms[1] * pitch - 1});
+  read_squares(t, o);
   return o;
 }
 

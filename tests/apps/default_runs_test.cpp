@@ -26,6 +26,7 @@ using test::Result;
 MeshData vessel(CellType type, double moved = 0.0) {
   BoxOptions options;
   options.cells = {4, 4, 4};
+  options.size = {1.0, 1.0, 1.0};
   options.type = type;
   MeshData mesh = generate_box(options);
   mesh.regions.assign(mesh.cell_count(), 1);

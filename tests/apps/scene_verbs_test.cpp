@@ -60,6 +60,7 @@ TEST_F(SceneVerbs, ASignalLeavesNothingOfAMesh) {
 TEST_F(SceneVerbs, ParticlesGoBackIntoAnOpenFoamCase) {
   BoxOptions options;
   options.cells = {3, 3, 3};
+  options.size = {1.0, 1.0, 1.0};
   test::FoamWriter(folder / "case", {}).write(test::foam_mesh(generate_box(options)));
   (void)write("s.toml",
               "[environment]\nmesh = 'case'\n[[particles]]\ncount = 20\nvelocity = [0.1, 0, 0]\n[motion]\ndt = "

@@ -64,5 +64,5 @@ int main() {
   run("spheres", mixed_box(), pouring, {}, 0.1);
   SimulationOptions in_plane = falling();
   in_plane.gravity = {0.0, -9.81, 0.0};
-  run("maze", generate_maze({}), in_plane, {});
+  run("maze", generate_maze({.size = std::array{1.0, 1.0}}), in_plane, {});
 }

@@ -146,6 +146,7 @@ struct Material {
 void expect_energy_law(const Material& m, std::uint64_t seed) {
   BoxOptions box;
   box.cells = {6, 6, 6};
+  box.size = {1.0, 1.0, 1.0};
   box.blocked_share = 0.08;
   box.seed = seed;
   Environment environment(generate_box(box), Threads{1});
@@ -344,6 +345,7 @@ TEST(Bodies, AreTheSameBitsForAnyNumberOfThreads) {
   for (const unsigned threads : {1U, 2U, 5U}) {
     BoxOptions box;
     box.cells = {5, 5, 5};
+    box.size = {1.0, 1.0, 1.0};
     box.jitter = 0.3;
     Environment environment(generate_box(box), Threads{threads});
     Bodies bodies(environment, options(1e-3, earth), bouncing(0.5, 0.3));

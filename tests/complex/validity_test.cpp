@@ -97,6 +97,7 @@ TEST(Validity, MessagesNameCellAndKind) {
 TEST(Validity, SameResultForAnyNumberOfThreadsAndAtMostSoMany) {
   BoxOptions o;
   o.cells = {24, 24, 24};
+  o.size = {1.0, 1.0, 1.0};
   o.jitter = 0.9;
   const MeshData mesh = generate_box(o);
   const CombinatorialMap map(mesh);

@@ -58,6 +58,7 @@ std::vector<test::EditMesh> box_meshes() {
           {"octahedra", [] {
              OctahedraOptions o;
              o.cells = {3, 2, 2};
+             o.size = {1.0, 1.0, 1.0};
              return generate_octahedra(o);
            }}};
 }

@@ -201,6 +201,7 @@ TEST(Section, SplitsNothingAlongFaces) {
 TEST(Section, SplitsWarpedCells) {
   BoxOptions o;
   o.cells = {5, 5, 5};
+  o.size = {1.0, 1.0, 1.0};
   o.jitter = 0.4;
   Random random(9);
   std::size_t refused = 0;

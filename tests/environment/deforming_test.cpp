@@ -254,8 +254,10 @@ TEST(Deforming, RandomMotionOfAllVertices) {
     options.seed = seed;
     options.jitter = 0.3;
     test::set_kind(options, static_cast<int>(seed % 5));
-    const MeshData mesh = seed % 6 == 5 ? generate_octahedra({.cells = {3, 3, 3}, .blocked_share = 0.2, .seed = seed})
-                                        : generate_box(options);
+    const MeshData mesh =
+        seed % 6 == 5
+            ? generate_octahedra({.cells = {3, 3, 3}, .size = Vec3{1.0, 1.0, 1.0}, .blocked_share = 0.2, .seed = seed})
+            : generate_box(options);
     Environment env(mesh);
     const std::vector<Vec3> rest(mesh.points);
     Particles particles;

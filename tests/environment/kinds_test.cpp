@@ -49,7 +49,7 @@ Scene draw_scene(std::uint64_t seed, Random& random) {
     o.mixed = true;
     o.jitter = random.below(2) == 0 ? 0.0 : 0.25;
     o.seed = seed;
-    scene = {generate_rectangle(o), {o.size[0], o.size[1], 0.0}};
+    scene = {generate_rectangle(o), {o.size->at(0), o.size->at(1), 0.0}};
   } else {
     scene = {test::patchwork(n, random), {double(n[0]), double(n[1]), double(n[2])}};
   }

@@ -413,6 +413,7 @@ std::vector<Vec3> stretched(const Environment& environment, double by) {
 MeshData three_cubes() {
   BoxOptions o;
   o.cells = {3, 3, 3};
+  o.size = {1.0, 1.0, 1.0};
   return generate_box(o);
 }
 

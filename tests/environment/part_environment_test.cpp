@@ -296,6 +296,7 @@ TEST(PartEnvironment, LatticeMotionsPassTheBordersOfParts) {
 TEST(PartEnvironment, PolyhedraAreSpread) {
   OctahedraOptions options;
   options.cells = {4, 4, 4};
+  options.size = {1.0, 1.0, 1.0};
   options.blocked_share = 0.1;
   const test::SteppedScene still{"octahedra", generate_octahedra(options), {}, 0.5};
   const test::SteppedScene moved{"octahedra that deform", still.mesh, test::sheared, 0.5};
@@ -326,6 +327,7 @@ TEST(PartEnvironment, LongStepsThatAreSplit) {
   box.blocked_share = 0.05;
   OctahedraOptions octahedra;
   octahedra.cells = {4, 4, 4};
+  octahedra.size = {1.0, 1.0, 1.0};
   octahedra.blocked_share = 0.1;
   StepOptions options;
   options.max_contacts = 3;

@@ -91,6 +91,7 @@ TEST(StateHash, TheOrderOfAddingDoesNotMatterButWhoIsWhereDoes) {
 std::string walked(const std::vector<std::uint32_t>& order, unsigned threads) {
   BoxOptions box;
   box.cells = {6, 6, 6};
+  box.size = {1.0, 1.0, 1.0};
   box.blocked_share = 0.2;
   box.jitter = 0.3;
   Environment environment(generate_box(box), Threads{threads});

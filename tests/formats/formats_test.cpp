@@ -299,7 +299,7 @@ TEST(Formats, CollapsedHexahedraGetTheirOwnTypes) {
       EXPECT_EQ(report.repairs.at(0).kind, "collapsed");
     }
   }
-  MeshData mesh = generate_box({.cells = {2, 1, 1}});
+  MeshData mesh = generate_box({.cells = {2, 1, 1}, .size = Vec3{1.0, 1.0, 1.0}});
   mesh.connectivity[8] = mesh.connectivity[14];  // a diagonal: no cell
   const Folder folder;
   write_mesh(mesh, folder / "a.vtu");

@@ -32,9 +32,10 @@ std::vector<MeshData> meshes() {
   }
   OctahedraOptions octahedra;
   octahedra.cells = {3, 3, 3};
+  octahedra.size = {1.0, 1.0, 1.0};
   octahedra.blocked_share = 0.2;
   all.push_back(checked(generate_octahedra(octahedra)));
-  MeshData tagged = checked(generate_box({.cells = {4, 3, 3}}));
+  MeshData tagged = checked(generate_box({.cells = {4, 3, 3}, .size = Vec3{1.0, 1.0, 1.0}}));
   for (std::size_t c = 0; c < tagged.cell_count(); ++c) tagged.regions.push_back(c < 5 ? 7 : -3);
   tagged.patch_names.erase(2);
   tagged.patch_order = {6, 2};
@@ -91,7 +92,7 @@ TEST_F(MeshPieces, AreReadAsPartsOfAnyNumber) {
 }
 
 TEST_F(MeshPieces, OfOtherMeshesAreRefused) {
-  const MeshData mesh = checked(generate_box({.cells = {9, 3, 3}}));
+  const MeshData mesh = checked(generate_box({.cells = {9, 3, 3}, .size = Vec3{1.0, 1.0, 1.0}}));
   const fs::path path = folder / "mesh.pvtu";
   write_mesh_parts(mesh, 3, path);
   EXPECT_EQ(reason(path, 3), "");
@@ -128,7 +129,7 @@ TEST_F(MeshPieces, OfOtherMeshesAreRefused) {
 
 // Whatever bytes a piece has, the answer is a part or a reason.
 TEST_F(MeshPieces, WithDamagedNumbersAreRefused) {
-  const MeshData mesh = checked(generate_box({.cells = {4, 2, 2}}));
+  const MeshData mesh = checked(generate_box({.cells = {4, 2, 2}, .size = Vec3{1.0, 1.0, 1.0}}));
   const fs::path path = folder / "mesh.pvtu";
   write_mesh_parts(mesh, 2, path);
   const MeshData piece = read_mesh(folder / "mesh_1.vtu").mesh;

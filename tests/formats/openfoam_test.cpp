@@ -73,6 +73,7 @@ void expect_case(const MeshFile& file, const MeshData& mesh, bool types = true) 
 MeshData box() {
   BoxOptions options;
   options.cells = {4, 3, 3};
+  options.size = {1.0, 1.0, 1.0};
   options.mixed = true;
   options.jitter = 0.3;
   MeshData mesh = generate_box(options);
@@ -172,6 +173,7 @@ TEST(OpenFoam, ACellInSeveralZonesHasTheFirst) {
 MeshData rectangle() {
   RectangleOptions options;
   options.cells = {7, 6};
+  options.size = {1.0, 1.0};
   options.mixed = true;
   options.jitter = 0.2;
   MeshData mesh = generate_rectangle(options);
@@ -208,6 +210,7 @@ void expect_refused(const MeshFile& file, const std::vector<std::string>& words)
 TEST(OpenFoam, PlanesThatAreNone) {
   BoxOptions box;
   box.cells = {3, 2, 2};
+  box.size = {1.0, 1.0, 1.0};
   MeshData mesh = generate_box(box);
   expect_refused(read_foam(foam_mesh(mesh, {{"zmin", "empty"}, {"zmax", "empty"}})), {"cell", "one layer"});
   expect_refused(read_foam(foam_mesh(mesh, {{"zmin", "empty"}, {"zmax", "empty"}, {"xmin", "empty"}})), {"one layer"});
@@ -347,8 +350,10 @@ void expect_baffles(const MeshData& mesh, const std::set<std::size_t>& baffles, 
 TEST(OpenFoam, BafflesAreWallsOnBothSides) {
   OctahedraOptions octahedra;
   octahedra.cells = {2, 2, 2};
+  octahedra.size = {1.0, 1.0, 1.0};
   RectangleOptions rectangle;
   rectangle.cells = {4, 3};
+  rectangle.size = {1.0, 1.0};
   rectangle.mixed = true;
   const MeshData plane = generate_rectangle(rectangle);
   std::mt19937 random(5);
@@ -383,7 +388,7 @@ TEST(OpenFoam, PartsMakeUpTheWhole) {
 }
 
 TEST(OpenFoam, PartsWithHalvesOfCyclicPairs) {
-  const MeshData mesh = generate_box({.cells = {4, 2, 2}});
+  const MeshData mesh = generate_box({.cells = {4, 2, 2}, .size = Vec3{1.0, 1.0, 1.0}});
   std::vector<std::size_t> part;
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) part.push_back(c % 3);
   const Folder folder;

@@ -186,6 +186,7 @@ TEST(PlanarRoundTrip, GeneratedMeshes) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     RectangleOptions o;
     o.cells = {12, 9};
+    o.size = {1.0, 1.0};
     o.mixed = true;
     o.jitter = 0.3;
     o.seed = seed;

@@ -138,6 +138,7 @@ TEST(ReadMemory, TheCountIsAnUpperBound) {
   tetrahedra.point_data.push_back({"v", 3, std::vector<double>(3 * tetrahedra.points.size(), 0.1)});
   OctahedraOptions octahedra;
   octahedra.cells = {20, 20, 20};
+  octahedra.size = {1.0, 1.0, 1.0};
   MeshData polyhedra_mesh = generate_octahedra(octahedra);
   (void)check_and_repair(polyhedra_mesh);
   const std::vector<std::pair<std::string, MeshData>> meshes = {

@@ -17,6 +17,7 @@ namespace dartcast::test::tetrahedra_files_test {
 MeshData box() {
   BoxOptions options;
   options.cells = {2, 2, 1};
+  options.size = {1.0, 1.0, 1.0};
   options.type = CellType::tetrahedron;
   options.jitter = 0.3;
   MeshData mesh = generate_box(options);
@@ -78,6 +79,7 @@ TEST(TetGen, FilesAreReadByEitherName) {
 TEST(TetGen, FilesOfTriangle) {
   RectangleOptions options;
   options.cells = {3, 2};
+  options.size = {1.0, 1.0};
   options.type = CellType::triangle;
   MeshData mesh = generate_rectangle(options);
   mesh.regions.assign(mesh.cell_count(), 4);

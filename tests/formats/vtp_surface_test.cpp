@@ -90,6 +90,7 @@ TEST(VtpSurface, MutantsGetAVerdict) {
 MeshData tetrahedra() {
   BoxOptions options;
   options.cells = {3, 2, 2};
+  options.size = {1.0, 1.0, 1.0};
   options.type = CellType::tetrahedron;
   return generate_box(options);
 }

@@ -106,6 +106,7 @@ TEST(XmlWrite, MeshesOfThePlane) {
 TEST(XmlWrite, ManyBlocks) {
   BoxOptions box;
   box.cells = {24, 20, 16};
+  box.size = {1.0, 1.0, 1.0};
   box.type = CellType::tetrahedron;
   box.jitter = 0.2;
   MeshData mesh = generate_box(box);

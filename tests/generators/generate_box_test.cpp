@@ -53,6 +53,33 @@ TEST(GenerateBox, EachTypeConformsIsPositiveAndFillsTheBox) {
   }
 }
 
+// The volume is linear in each coordinate, so it is least where each is at an end of its range.
+TEST(GenerateBox, ASurelyValidJitterInvertsNoTetrahedron) {
+  const std::array<Vec3, 4> corners = {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 1, 1}}};
+  const auto least_volume = [&](double jitter) {
+    double least = 1.0;
+    for (unsigned ends = 0; ends < 1U << 12U; ++ends) {
+      std::array<Vec3, 4> x = corners;
+      const auto shift = [&](unsigned k) { return (((ends >> k) & 1U) == 0 ? -0.5 : 0.5) * jitter; };
+      for (unsigned k = 0; k < 4; ++k) x[k] += Vec3{shift(3 * k), shift(3 * k + 1), shift(3 * k + 2)};
+      least = std::min(least, dot(cross(x[1] - x[0], x[2] - x[0]), x[3] - x[0]));
+    }
+    return least;
+  };
+  EXPECT_GT(least_volume(surely_valid_jitter - 1e-9), 0.0);
+  EXPECT_LT(least_volume(surely_valid_jitter + 1e-3), 0.0);
+}
+
+TEST(GenerateBox, CubesHaveTheEdgeOneUnlessTheSizeIsGiven) {
+  const auto top = [](const MeshData& mesh) { return mesh.points.back(); };
+  EXPECT_EQ(top(generate_box({.cells = {6, 5, 4}})), (Vec3{6, 5, 4}));
+  EXPECT_EQ(top(generate_box({.cells = {6, 5, 4}, .size = Vec3{1, 1, 1}})), (Vec3{1, 1, 1}));
+  EXPECT_EQ(top(generate_rectangle({.cells = {6, 5}})), (Vec3{6, 5, 0}));
+  EXPECT_EQ(top(generate_maze({.rooms = {2, 1}, .room_cells = 4})), (Vec3{9, 4, 0}));
+  EXPECT_EQ(generate_octahedra({.cells = {3, 1, 1}}).points,
+            generate_octahedra({.cells = {3, 1, 1}, .size = Vec3{3, 1, 1}}).points);
+}
+
 TEST(GenerateBox, PatchFacesLieOnTheSideNamed) {
   BoxOptions o = box(2, 3, 4);
   o.mixed = true;
@@ -82,7 +109,7 @@ TEST(GenerateBox, PointsAreLexicographicAndExactOnLattices) {
   BoxOptions o = box(3, 3, 3);
   o.origin = {-1, 10, 0.5};
   o.size = {0.7, 0.1, 0.3};
-  EXPECT_EQ(generate_box(o).points.back(), o.origin + o.size);
+  EXPECT_EQ(generate_box(o).points.back(), o.origin + *o.size);
 }
 
 TEST(GenerateBox, MixedBoxesHaveAllTypesAndConform) {
@@ -204,11 +231,11 @@ TEST(GenerateBox, RefusesWhatItCannotBuild) {
   refuses([](BoxOptions& o) { o.cells = {1U << 15U, 1U << 14U, 1}; }, "536870911");
   refuses([](BoxOptions& o) { o.cells = {4294967295U, 4294967295U, 4294967295U}; }, "536870911");
   refuses([](BoxOptions& o) { o.cells = {89478486, 1, 1}, o.type = CellType::tetrahedron; }, "536870911");
-  refuses([](BoxOptions& o) { o.size.y = nan; }, "finite");
+  refuses([](BoxOptions& o) { o.size->y = nan; }, "finite");
   refuses([](BoxOptions& o) { o.origin.z = inf; }, "finite");
-  refuses([](BoxOptions& o) { o.origin.x = o.size.x = 1.5e308; }, "finite");
-  refuses([](BoxOptions& o) { o.size.x = 0; }, "positive");
-  refuses([](BoxOptions& o) { o.size.x = -1; }, "positive");
+  refuses([](BoxOptions& o) { o.origin.x = o.size->x = 1.5e308; }, "finite");
+  refuses([](BoxOptions& o) { o.size->x = 0; }, "positive");
+  refuses([](BoxOptions& o) { o.size->x = -1; }, "positive");
   refuses([](BoxOptions& o) { o.blocked_share = 1.5; }, "blocked_share");
   refuses([](BoxOptions& o) { o.blocked_share = nan; }, "blocked_share");
   refuses([](BoxOptions& o) { o.jitter = nan; }, "jitter");

@@ -175,7 +175,7 @@ TEST(GenerateMaze, RefusesWhatItCannotBuild) {
   refuses([](MazeOptions& o) { o.room_cells = 4294967295U; }, "too many squares");
   refuses([](MazeOptions& o) { o.rooms = {1U << 14U, 1U << 14U}; }, "536870911");
   refuses([](MazeOptions& o) { o.jitter = 0.5; }, "jitter");
-  refuses([](MazeOptions& o) { o.size[0] = 0; }, "positive");
+  refuses([](MazeOptions& o) { o.size->at(0) = 0; }, "positive");
   refuses([](MazeOptions& o) { o.type = CellType::prism; }, "space");
 }
 

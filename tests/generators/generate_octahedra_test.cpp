@@ -83,8 +83,8 @@ TEST(GenerateOctahedra, RefusesWhatItCannotBuild) {
   };
   refuses([](OctahedraOptions& o) { o.cells[2] = 0; }, "no cells");
   refuses([](OctahedraOptions& o) { o.cells = {4294967295U, 4294967295U, 2}; }, "536870911");
-  refuses([](OctahedraOptions& o) { o.size.y = std::numeric_limits<double>::quiet_NaN(); }, "finite");
-  refuses([](OctahedraOptions& o) { o.size.y = -1; }, "positive");
+  refuses([](OctahedraOptions& o) { o.size->y = std::numeric_limits<double>::quiet_NaN(); }, "finite");
+  refuses([](OctahedraOptions& o) { o.size->y = -1; }, "positive");
   refuses([](OctahedraOptions& o) { o.blocked_share = -0.1; }, "blocked_share");
 }
 

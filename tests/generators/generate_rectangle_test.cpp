@@ -213,11 +213,11 @@ TEST(GenerateRectangle, RefusesWhatItCannotBuild) {
   refuses([](RectangleOptions& o) { o.cells = {1U << 15U, 1U << 14U}; }, "536870911");
   refuses([](RectangleOptions& o) { o.cells = {4294967295U, 4294967295U}; }, "536870911");
   refuses([](RectangleOptions& o) { o.cells = {1U << 28U, 1}, o.type = CellType::triangle; }, "536870911");
-  refuses([](RectangleOptions& o) { o.size[1] = nan; }, "finite");
+  refuses([](RectangleOptions& o) { o.size->at(1) = nan; }, "finite");
   refuses([](RectangleOptions& o) { o.origin[0] = inf; }, "finite");
-  refuses([](RectangleOptions& o) { o.origin[0] = o.size[0] = 1.5e308; }, "finite");
-  refuses([](RectangleOptions& o) { o.size[0] = 0; }, "positive");
-  refuses([](RectangleOptions& o) { o.size[1] = -1; }, "positive");
+  refuses([](RectangleOptions& o) { o.origin[0] = o.size->at(0) = 1.5e308; }, "finite");
+  refuses([](RectangleOptions& o) { o.size->at(0) = 0; }, "positive");
+  refuses([](RectangleOptions& o) { o.size->at(1) = -1; }, "positive");
   refuses([](RectangleOptions& o) { o.blocked_share = 1.5; }, "blocked_share");
   refuses([](RectangleOptions& o) { o.blocked_share = nan; }, "blocked_share");
   refuses([](RectangleOptions& o) { o.jitter = nan; }, "jitter");

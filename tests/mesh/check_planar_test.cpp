@@ -63,6 +63,7 @@ TEST(InspectPlanar, GeneratedMeshesAreAcceptedAsTheyAre) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     RectangleOptions o;
     o.cells = {9, 7};
+    o.size = {1.0, 1.0};
     o.mixed = true;
     o.jitter = 0.3;
     o.seed = seed;

@@ -127,6 +127,7 @@ TEST(Patches, AVesselHasItsEndsAndItsWall) {
 TEST(Patches, EdgesInThePlane) {
   RectangleOptions options;
   options.cells = {4, 3};
+  options.size = {1.0, 1.0};
   const MeshData given = generate_rectangle(options);
   MeshData mesh = given;
   divide_walls(mesh, 30.0);

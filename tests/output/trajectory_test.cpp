@@ -178,6 +178,7 @@ TEST(TrajectorySvg, IsTheSameInAnyLocale) {
 TEST(TrajectorySvg, RefusesSpaceAndNothing) {
   BoxOptions box;
   box.cells = {3, 3, 3};
+  box.size = {1.0, 1.0, 1.0};
   Environment space(generate_box(box));
   const auto traces = trace_of(space, {0.1, 0.1, 0.1}, {{0.9, 0.8, 0.7}});
   ASSERT_EQ(traces.size(), 1U);
@@ -206,6 +207,7 @@ std::vector<std::vector<std::string>> rows_of(const std::string& csv) {
 TEST(TrajectoryCsv, HasARowForEachEventAndEveryBit) {
   BoxOptions box;
   box.cells = {3, 3, 3};
+  box.size = {1.0, 1.0, 1.0};
   box.jitter = 0.3;
   Environment environment(generate_box(box));
   const auto traces = trace_of(environment, {0.1, 0.15, 0.2}, {{0.9, 0.8, 0.7}, {0.5, 0.1, 2.0}});

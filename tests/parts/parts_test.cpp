@@ -34,6 +34,7 @@ std::map<std::string, MeshData> meshes() {
   }
   OctahedraOptions octahedra;
   octahedra.cells = {3, 3, 3};
+  octahedra.size = {1.0, 1.0, 1.0};
   octahedra.blocked_share = 0.2;
   all["octahedra"] = checked(generate_octahedra(octahedra));
   return all;
@@ -140,6 +141,7 @@ TEST(Parts, ArePutTogether) {
 TEST(Parts, OfOtherMeshesAreNotPutTogether) {
   BoxOptions box;
   box.cells = {4, 2, 2};
+  box.size = {1.0, 1.0, 1.0};
   const MeshPart low = box_part(box, 2, 0);
   box.origin.x = 0.25;
   EXPECT_THROW(merged_parts({low, box_part(box, 2, 1)}, 1, 0), InvalidMesh);
@@ -199,6 +201,7 @@ TEST(Bisection, GivesEachPartACell) {
 TEST(Bisection, BalancesManyParts) {
   BoxOptions box;
   box.cells = {20, 10, 10};
+  box.size = {1.0, 1.0, 1.0};
   box.type = CellType::tetrahedron;
   const MeshData mesh = generate_box(box);
   const std::vector<std::uint32_t> parts = partition(mesh, 24);

@@ -28,6 +28,7 @@ using test::FoamWriter;
 MeshData box() {
   BoxOptions o;
   o.cells = {4, 3, 3};
+  o.size = {1.0, 1.0, 1.0};
   return generate_box(o);
 }
 

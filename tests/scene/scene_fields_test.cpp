@@ -262,6 +262,7 @@ TEST_F(SceneFields, LaterFilesAreCheckedWhenTheyAreNeeded) {
   expect_parts(error_at_five(), {"U_10.vtu", "'U'", "not finite", "item 2"});
   BoxOptions o;
   o.cells = {2, 2, 2};
+  o.size = {1.0, 1.0, 1.0};
   other = generate_box(o);
   add_arrays(other, "U", "C", 2);
   write_mesh(other, folder_ / "U_10.vtu");

@@ -333,7 +333,7 @@ TEST(SceneFile, GeneratorsTakeTheirParameters) {
   EXPECT_EQ(b.seed, 3U);
   EXPECT_EQ(b.jitter, 0.2);
   const Scene o = parse_scene("[environment]\ngenerator = 'octahedra'\ncells = [2, 3, 4]\n", "s.toml");
-  EXPECT_EQ(std::get<OctahedraOptions>(o.environment.mesh).size, (Vec3{2, 3, 4}));
+  EXPECT_EQ(std::get<OctahedraOptions>(o.environment.mesh).size, std::nullopt);
   const Scene v =
       parse_scene("[environment]\ngenerator = 'vessel'\ncore = 4\nbranch_lengths = [0.03, 0.04]\n", "s.toml");
   EXPECT_EQ(std::get<VesselOptions>(v.environment.mesh).core, 4U);
@@ -360,7 +360,7 @@ TEST(SceneFile, GeneratorsOfThePlaneTakeTheirParameters) {
       "s.toml");
   const auto& m = std::get<MazeOptions>(s.environment.mesh);
   EXPECT_EQ(m.rooms, (std::array<std::uint32_t, 2>{3, 2}));
-  EXPECT_EQ(m.size, (std::array{23.0, 15.0}));
+  EXPECT_EQ(m.size, std::nullopt);
   EXPECT_EQ(m.room_cells, 7U);
   EXPECT_EQ(m.door_cells, 3U);
   EXPECT_EQ(m.obstacles, 5U);

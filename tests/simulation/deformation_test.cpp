@@ -82,6 +82,7 @@ TEST(Deformation, StretchKeepsVolumes) {
   expect_near(move(s, 1.0, {2, 1, 2}), {1 + 1 / 1.2, 1, 2.44});
   BoxOptions box;
   box.cells = {3, 3, 3};
+  box.size = {1.0, 1.0, 1.0};
   MeshData mesh = generate_box(box);
   Deformation({s}, mesh.points).positions(3.0, mesh.points);
   EXPECT_NEAR(test::volume(mesh), 1.0, 1e-14);
@@ -150,6 +151,7 @@ std::vector<DeformationStep> one_of_each() {
 TEST(Deformation, SameBitsForAnyNumberOfThreadsAndAnyHistory) {
   BoxOptions box;
   box.cells = {30, 30, 30};
+  box.size = {1.0, 1.0, 1.0};
   const MeshData mesh = generate_box(box);
   const Deformation deformation(one_of_each(), mesh.points);
   std::vector<Vec3> one(mesh.points.size()), many(mesh.points.size());

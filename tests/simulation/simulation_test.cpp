@@ -451,6 +451,7 @@ TEST(Simulation, RefusesWhatLeavesThePlane) {
 TEST(Simulation, AnAbsorbedParticleMeetsNoFurtherWallInItsStep) {
   BoxOptions box;
   box.cells = {2, 2, 2};
+  box.size = {1.0, 1.0, 1.0};
   const MeshData mesh = generate_box(box);
   for (const bool flows : {false, true}) {
     Environment environment(mesh);

@@ -11,6 +11,7 @@ void PrintTo(const EditMesh& m, std::ostream* out) { *out << m.name; }
 MeshData edit_box(CellType type, bool mixed, std::uint32_t size) {
   BoxOptions o;
   o.cells = {size, size, size};
+  o.size = {1.0, 1.0, 1.0};
   o.type = type;
   o.mixed = mixed;
   o.blocked_share = 0.1;
@@ -27,6 +28,7 @@ std::vector<EditMesh> edit_meshes() {
            [] {
              OctahedraOptions o;
              o.cells = {3, 2, 2};
+             o.size = {1.0, 1.0, 1.0};
              o.blocked_share = 0.1;
              return generate_octahedra(o);
            }},
@@ -36,6 +38,7 @@ std::vector<EditMesh> edit_meshes() {
 MeshData edit_rectangle(CellType type, bool mixed) {
   RectangleOptions o;
   o.cells = {8, 8};
+  o.size = {1.0, 1.0};
   o.type = type;
   o.mixed = mixed;
   o.blocked_share = 0.1;

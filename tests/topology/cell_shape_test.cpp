@@ -59,6 +59,7 @@ TEST(Shapes, SimplicesPerType) {
 MeshData meshes(int which) {
   BoxOptions o;
   o.cells = {2, 3, 2};
+  o.size = {1.0, 1.0, 1.0};
   o.jitter = 0.7;
   o.seed = 11;
   test::set_kind(o, which);
@@ -66,6 +67,7 @@ MeshData meshes(int which) {
   if (which == 6) return test::mixed_mesh();
   OctahedraOptions p;
   p.cells = {2, 1, 2};
+  p.size = {1.0, 1.0, 1.0};
   return generate_octahedra(p);
 }
 constexpr int mesh_kinds = 7;

@@ -59,6 +59,7 @@ INSTANTIATE_TEST_SUITE_P(CombinatorialMap, EveryMesh,
                                               [] {
                                                 OctahedraOptions o;
                                                 o.cells = {2, 2, 1};
+                                                o.size = {1.0, 1.0, 1.0};
                                                 o.blocked_share = 0.3;
                                                 return generate_octahedra(o);
                                               }},

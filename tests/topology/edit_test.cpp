@@ -308,6 +308,7 @@ TEST(Edits, LimitsLeaveTheMapAsItIs) {
 TEST(Edits, CutsOpenWhereTheLastFaceGoes) {
   BoxOptions o;
   o.cells = {3, 3, 2};
+  o.size = {1.0, 1.0, 1.0};
   CombinatorialMap map(generate_box(o));
   Transaction t(map);
   std::size_t created = 0;
@@ -337,6 +338,7 @@ TEST(Edits, CutsOpenWhereTheLastFaceGoes) {
 TEST(Edits, ACrackInsideStaysOpenWhenItsRimIsSplit) {
   BoxOptions o;
   o.cells = {3, 3, 2};
+  o.size = {1.0, 1.0, 1.0};
   CombinatorialMap map(generate_box(o));
   Transaction t(map);
   const auto find = [&](std::uint32_t source) {
@@ -401,6 +403,7 @@ std::map<std::string, std::size_t> faces_by_patch(const CombinatorialMap& map) {
 TEST(Edits, PatchesFollow) {
   BoxOptions o;
   o.cells = {2, 1, 1};
+  o.size = {1.0, 1.0, 1.0};
   CombinatorialMap map(generate_box(o));
   Transaction t(map);
   const auto on = [&](std::string_view name) {
@@ -450,6 +453,7 @@ TEST(Edits, PatchesFollow) {
 TEST(Edits, FacePointsStayWhereTheFaceDoes) {
   BoxOptions o;
   o.cells = {2, 1, 1};
+  o.size = {1.0, 1.0, 1.0};
   const MeshData mesh = generate_box(o);
   const CombinatorialMap plain(mesh);
   SteinerPoints points;

@@ -80,10 +80,12 @@ class Planted : public testing::TestWithParam<CellType> {
     if (GetParam() == CellType::polyhedron) {
       OctahedraOptions o;
       o.cells = {3, 3, 3};
+      o.size = {1.0, 1.0, 1.0};
       return generate_octahedra(o);
     }
     BoxOptions o;
     o.cells = {3, 3, 3};
+    o.size = {1.0, 1.0, 1.0};
     o.type = GetParam();
     return generate_box(o);
   }
@@ -192,6 +194,7 @@ TEST_P(Planted, AfterEdits) {
 TEST(Integrity, BothSidesOfAFaceHaveOnePoint) {
   BoxOptions o;
   o.cells = {2, 1, 1};
+  o.size = {1.0, 1.0, 1.0};
   CombinatorialMap map(generate_box(o));
   Transaction t(map);
   std::vector<CellDraft> drafts;

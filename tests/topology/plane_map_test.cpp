@@ -133,6 +133,7 @@ class TwoSquares : public testing::Test {
   static MeshData mesh() {
     RectangleOptions o;
     o.cells = {2, 1};
+    o.size = {1.0, 1.0};
     return generate_rectangle(o);
   }
   void expect_valid() const {

@@ -145,7 +145,7 @@ def of_points_among_moving_walls() -> Calls:
 
 
 def of_trajectories() -> Calls:
-    plane = dc.Environment(dc.generate_rectangle(cells=[4, 4]), threads=1)
+    plane = dc.Environment(dc.generate_rectangle(cells=[4, 4], size=[1.0, 1.0]), threads=1)
     particles, _ = plane.add(np.array([[0.1, 0.15, 0.0]]))
     traces = plane.trace(particles, 0, np.array([[0.8, 0.85, 0.0], [1.4, 0.85, 0.0]]))
     trace = traces[1]

@@ -15,7 +15,7 @@ FOLDER = pathlib.Path(OWN_FOLDER.name)
 
 
 def box(n: int = 3, **options: object) -> dc.MeshData:
-    return dc.generate_box(cells=[n, n, n], **options)
+    return dc.generate_box(cells=[n, n, n], size=[1.0, 1.0, 1.0], **options)
 
 
 def complex_of(n: int = 2, **options: object) -> dc.topology.CellComplex:

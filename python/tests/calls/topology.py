@@ -174,7 +174,7 @@ def to_savepoint(t: dc.topology.Transaction) -> None:
 
 def of_transactions() -> Calls:
     m, cube, square = (dc.topology.CombinatorialMap(mesh) for mesh in
-                       (box(2), box(1), dc.generate_rectangle(cells=[2, 2])))
+                       (box(2), box(1), dc.generate_rectangle(cells=[2, 2], size=[1.0, 1.0])))
     marked = dc.topology.Transaction(dc.topology.CombinatorialMap(box(2)))
     dc.topology.split_edge(marked, (first(marked.map), 0))
 
