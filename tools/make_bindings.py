@@ -41,7 +41,6 @@ ROWS = {
     "ParticleState": "position cell simplex touching_count held touching_cell:cells_of(x.touching) "
                      "touching_face:faces_of(x.touching)",
     "Location": PLACE.format(""),
-    "AddResult": "particle " + PLACE.format("location."),
     "RayHit": f"origin hit kind {FACE} triangle patch distance point normal invalid_cell",
     "HeldParticle": "particle cell",
     "StoppedParticle": "particle unused",

@@ -9,12 +9,32 @@
 
 namespace py = pybind11;
 
-namespace dartcast::python::environment_adding {
+namespace dartcast::python {
+
+Added added_of(std::span<const AddResult> results) {
+  py::array_t<bool> is_in(static_cast<py::ssize_t>(results.size()));
+  std::vector<std::uint32_t> indices;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const bool added = results[i].location.place == Place::free;
+    is_in.mutable_at(static_cast<py::ssize_t>(i)) = added;
+    if (added) indices.push_back(results[i].particle);
+  }
+  const std::size_t left_out = results.size() - indices.size();
+  if (2 * left_out > results.size()) {
+    const std::string text = "add: " + std::to_string(left_out) + " of " + std::to_string(results.size()) +
+                             " positions are in no free cell, and were not added: are they in the unit of the mesh? " +
+                             "locate() says where each one is";
+    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+  }
+  return py::make_tuple(is_in, array_of(std::move(indices)));
+}
+
+namespace environment_adding {
 namespace {
 
 constexpr const char* remedy = "add particles by the simulation";
 
-py::array add(const EnvironmentHandle& h, ParticlesHandle& p, const Typed<"Points">& given) {
+Added add(const EnvironmentHandle& h, ParticlesHandle& p, const Typed<"Points">& given) {
   const auto positions = vectors(given, "positions");
   const UseBoth use(h, p);
   std::vector<AddResult> added;
@@ -23,13 +43,13 @@ py::array add(const EnvironmentHandle& h, ParticlesHandle& p, const Typed<"Point
     const py::gil_scoped_release release;
     added = e.add(p.particles, positions);
   }
-  return rows_of(added);
+  return added_of(added);
 }
 
-Typed<"tuple[Particles, Records]"> add_new(const EnvironmentHandle& h, const Typed<"Points">& given) {
+Typed<"tuple[Particles, NDArray[bool]]"> add_new(const EnvironmentHandle& h, const Typed<"Points">& given) {
   auto made = std::make_shared<ParticlesHandle>();
-  const py::array places = add(h, *made, given);
-  return py::make_tuple(made, places);
+  const auto added = py::tuple(add(h, *made, given));
+  return py::make_tuple(made, added[0]);
 }
 
 bool add_to_simplex(const EnvironmentHandle& h, ParticlesHandle& p, SimplexId simplex, const Vec3& position) {
@@ -77,10 +97,11 @@ ParticlesPointer restored(const EnvironmentHandle& h, const Typed<"Records">& gi
 void bind(EnvironmentClass& c) {
   c.def("add", &add, py::arg("particles"), py::arg("positions"),
         about("Environment::add",
-              "positions: float64 (n, 3). Returns a structured array, one row for each position: particle (its index "
-              "in the set; NONE unless the place is free), place, kind, simplex, dart, cell, dart_cell."));
+              "positions: float64 (n, 3). Returns a tuple: bool (n,), which positions lie in a free cell, and the "
+              "indices that these have in the set, uint32 (m,). Warns where more than half of them do not. locate() "
+              "says where each position is."));
   c.def("add", &add_to_simplex, py::arg("particles"), py::arg("simplex"), py::arg("position"));
-  c.def("add", &add_new, py::arg("positions"), "Adds to a new set: returns (particles, places).");
+  c.def("add", &add_new, py::arg("positions"), "Adds to a new set: returns the set, and which positions were added.");
   c.def("add_random", &added_random, py::arg("count"), py::arg("seed") = 1, about("add_random", "Returns a new set."));
   c.def("restored", &restored, py::arg("states"), py::arg("weights") = py::none(),
         about("Environment::restored",
@@ -88,4 +109,5 @@ void bind(EnvironmentClass& c) {
               "particle is held."));
 }
 
-}  // namespace dartcast::python::environment_adding
+}  // namespace environment_adding
+}  // namespace dartcast::python

@@ -66,8 +66,8 @@ std::vector<double> optional_numbers(const py::object& given, const char* name) 
 }
 
 // One velocity and radius for all particles, or one each.
-py::array add(Handle& self, const Typed<"Points">& positions, const Typed<"Vector | Points">& velocity,
-              const Typed<"float | Floats">& radius, const Typed<"Numbers[float64] | None">& user_data) {
+Added add(Handle& self, const Typed<"Points">& positions, const Typed<"Vector | Points">& velocity,
+          const Typed<"float | Floats">& radius, const Typed<"Numbers[float64] | None">& user_data) {
   const auto x = vectors(positions, "positions");
   const std::vector<double> data = optional_numbers(user_data, "user_data");
   const bool single_radius =
@@ -75,14 +75,14 @@ py::array add(Handle& self, const Typed<"Points">& positions, const Typed<"Vecto
   if (!is_array(velocity, 2) && single_radius) {
     const Vec3 v = vector(velocity, "velocity");
     const auto r = radius.cast<double>();
-    return rows_of(change(self, [&](Simulation& s) { return s.add(x, v, r, data); }));
+    return added_of(change(self, [&](Simulation& s) { return s.add(x, v, r, data); }));
   }
   const std::vector<Vec3> same(is_array(velocity, 2) ? 0 : x.size(),
                                is_array(velocity, 2) ? Vec3{} : vector(velocity, "velocity"));
   const std::vector<double> same_radius(single_radius ? x.size() : 0, single_radius ? radius.cast<double>() : 0.0);
   const std::span<const Vec3> v = is_array(velocity, 2) ? vectors(velocity, "velocity") : std::span<const Vec3>(same);
   const std::span<const double> r = single_radius ? std::span<const double>(same_radius) : numbers(radius, "radius");
-  return rows_of(change(self, [&](Simulation& s) { return s.add(x, v, r, data); }));
+  return added_of(change(self, [&](Simulation& s) { return s.add(x, v, r, data); }));
 }
 
 void add_random(Handle& self, std::size_t count, const Vec3& velocity, double radius,
@@ -163,8 +163,8 @@ void bind_adding(Class& simulation) {
       .def("add", &add_scene<BodyScene>, py::arg("body"),
            about("Simulation::add",
                  "positions: float64 (n, 3). velocity: three numbers, or float64 (n, 3). radius: a number, or float64 "
-                 "(n,). user_data: a number for each name, the same for all of these particles. Instead of positions, "
-                 "a BodyScene, a CatheterScene or a SolidScene."))
+                 "(n,). user_data: a number for each name, the same for all of these particles. Returns as "
+                 "Environment.add(). Instead of positions, a BodyScene, a CatheterScene or a SolidScene."))
       .def("add", &add_scene<CatheterScene>, py::arg("catheter"))
       .def("add", &add_scene<SolidScene>, py::arg("solid"))
       .def("add", &add, py::arg("positions"), py::arg("velocity"), py::arg("radius") = 0.0,

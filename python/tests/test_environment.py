@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import copy
+import warnings
 
 import dartcast
 import numpy as np
@@ -13,8 +14,8 @@ def box(n=2, **options):
 
 
 def centred(env):
-    parts, places = env.add(np.array([[0.25, 0.25, 0.25], [0.6, 0.7, 0.8], [0.9, 0.1, 0.2]]))
-    assert (places["place"] == dartcast.Place.FREE).all()
+    parts, added = env.add(np.array([[0.25, 0.25, 0.25], [0.6, 0.7, 0.8], [0.9, 0.1, 0.2]]))
+    assert added.all()
     return parts
 
 
@@ -135,11 +136,15 @@ def test_a_mesh_with_a_defect_is_refused():
 
 def test_particles_are_added_where_cells_are_free():
     env = box(3, blocked_layer=True)
-    parts, places = env.add(np.array([[0.5, 0.5, 0.5], [0.1, 0.1, 0.1], [3.0, 0.0, 0.0]]))
-    assert len(parts) == 1 and places["particle"].tolist() == [0, dartcast.NONE, dartcast.NONE]
-    assert places["place"].tolist() == [dartcast.Place.FREE, dartcast.Place.BLOCKED, dartcast.Place.OUTSIDE]
-    more = env.add(parts, np.array([[0.4, 0.5, 0.5]]))
-    assert len(parts) == 2 and more["particle"][0] == 1
+    x = np.array([[0.5, 0.5, 0.5], [0.1, 0.1, 0.1], [3.0, 0.0, 0.0]])
+    with pytest.warns(UserWarning, match="add: 2 of 3 positions are in no free cell"):
+        parts, added = env.add(x)
+    assert len(parts) == 1 and added.tolist() == [True, False, False]
+    assert env.locate(x)["place"].tolist() == [dartcast.Place.FREE, dartcast.Place.BLOCKED, dartcast.Place.OUTSIDE]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        added, indices = env.add(parts, np.array([[0.4, 0.5, 0.5], [0.1, 0.1, 0.1]]))
+    assert len(parts) == 2 and added.tolist() == [True, False] and indices.tolist() == [1]
     at = parts[0]
     assert env.add(parts, at.at(), at.position) and len(parts) == 3
     assert not env.add(parts, at.at(), [0.1, 0.1, 0.1]) and len(parts) == 3

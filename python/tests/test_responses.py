@@ -61,8 +61,8 @@ def test_a_ready_callback_does_the_same():
     statuses[:] = 0
     env.advance(parts, targets, ready)
     assert statuses[0] == ParticleStatus.STUCK and np.array_equal(v, [[0, 0, 0]])
-    more = env.add(parts, np.array([[0.5, 0.5, 0.5]]))
-    assert len(more) == 1
+    added, _ = env.add(parts, np.array([[0.5, 0.5, 0.5]]))
+    assert added.all()
     with pytest.raises(dartcast.InvalidArgument, match="2 particles; got 1"):
         env.advance(parts, parts.positions, ready)
 

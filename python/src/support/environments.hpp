@@ -12,6 +12,11 @@ namespace dartcast::python {
 using EnvironmentPointer = std::shared_ptr<EnvironmentHandle>;
 using ParticlesPointer = std::shared_ptr<ParticlesHandle>;
 
+/// The result of add(): bool (n,), whether each position was added; uint32 (m,), the indices of those that were.
+using Added = Typed<"tuple[NDArray[bool], NDArray[uint32]]">;
+/// Warns where more than half were not.
+Added added_of(std::span<const AddResult> results);
+
 /// An environment and particles for the time of one call.
 struct UseBoth {
   Use environment;
