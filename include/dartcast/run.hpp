@@ -57,6 +57,7 @@ struct Summary {
   Finding skipped;              ///< bad cells that were left out
   std::vector<Finding> warnings;  ///< LoadedScene::warnings
 
+  bool has_masses = false;  ///< spheres have masses ([collisions]): energies are in J, else in J/kg
   SimulationTotals totals;
   std::uint64_t alive = 0;
   std::uint64_t held = 0;  ///< at the end

@@ -234,6 +234,7 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   summary.threads = thread_count(options.threads);
   summary.ranks = options.ranks != nullptr ? options.ranks->size() : 1;
   summary.deforms = !scene.deformation.empty();
+  summary.has_masses = scene.collisions.has_value();
   if (!scene.events.empty() || scene.remesh.every > 0 || scene.adaptive_subdivision.every > 0)
     summary.surgery.emplace();
   if (options.audit) summary.audit.emplace();

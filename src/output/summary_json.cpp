@@ -225,6 +225,7 @@ std::string summary_json(const Summary& s) {
         {"subdivided", s.surgery->subdivided}, {"merged", s.surgery->merged}, {"refused", s.surgery->refused}};
   }
   if (t.collisions.pairs_tested + t.wall_overlaps > 0) json["collisions"] = collisions(t);
+  if (t.start + t.injected > 0) json["energy_unit"] = s.has_masses ? "J" : "J/kg";
   if (!s.bodies.empty()) json["bodies"] = bodies(s.bodies);
   if (!s.catheters.empty()) json["catheters"] = catheters(s.catheters);
   if (!s.solids.empty()) json["tools"] = solids(s.solids);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -167,6 +168,16 @@ std::string line_chart(const Chart& chart, const std::vector<ChartSeries>& serie
   return figure(chart, chart_height, grid(chart, x, y) + lines + (series.size() > 1 ? legend(series) : std::string()));
 }
 
+std::string patch_colour(std::size_t patch) {
+  if (patch == 0) return "var(--line)";
+  static constexpr std::array<int, 8> order = {6, 0, 1, 2, 3, 4, 5, 7};
+  const std::size_t round = (patch - 1) / order.size();
+  const std::string colour = fmt::format("var(--c{})", order[(patch - 1) % order.size()]);
+  if (round == 0) return colour;
+  return fmt::format("color-mix(in srgb,{} {:.4g}%,var(--text))", colour,
+                     100.0 * std::pow(0.65, static_cast<double>(round)));
+}
+
 std::string bar_chart(const Chart& chart, const std::vector<Bar>& bars) {
   constexpr double row = 24.0;
   constexpr double names = 150.0;
@@ -179,8 +190,8 @@ std::string bar_chart(const Chart& chart, const std::vector<Bar>& bars) {
     const double length = most > 0.0 ? (chart_width - names - values) * b.value / most : 0.0;
     out += text(names - 8.0, y + 15.0, "end", b.name.size() > 22 ? b.name.substr(0, 21) + "…" : b.name);
     out += fmt::format(
-        "<rect x=\"{}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"16\" fill=\"var(--c0)\"><title>{}</title></rect>", names,
-        y + 2.0, std::max(length, b.value > 0.0 ? 1.0 : 0.0), html(b.name + ": " + b.label));
+        "<rect x=\"{}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"16\" fill=\"{}\"><title>{}</title></rect>", names,
+        y + 2.0, std::max(length, b.value > 0.0 ? 1.0 : 0.0), b.colour, html(b.name + ": " + b.label));
     out += text(names + length + 7.0, y + 15.0, "start", b.label);
     y += row;
   }

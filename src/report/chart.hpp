@@ -30,7 +30,10 @@ struct Bar {
   std::string name;
   double value = 0.0;
   std::string label;  ///< the value in words
+  std::string colour = "var(--c0)";
 };
+/// The colour of a patch, 0: none, as the viewer has it (viewer/src/colours.js).
+std::string patch_colour(std::size_t patch);
 /// Horizontal bars with their names and values.
 std::string bar_chart(const Chart& chart, const std::vector<Bar>& bars);
 

@@ -144,15 +144,18 @@ std::string histogram_of_tests(const RunJson& summary) {
                          0, shares);
 }
 
-// Bars of an object of numbers, the greatest first.
-std::vector<Bar> bars_of(const RunJson& object, const char* unit) {
+// Bars of an object of numbers, the greatest first. Where `patches`, they stand for patches, in their order.
+std::vector<Bar> bars_of(const RunJson& object, const char* unit, bool patches = false) {
   std::vector<Bar> bars;
   if (!object.is_object()) return bars;
+  std::size_t place = 0;
   for (const auto& [name, value] : object.items()) {
+    ++place;
     if (!value.is_number() || !(value.get<double>() > 0.0)) continue;
     const std::string label = value.is_number_integer() ? fmt::format("{}{}", value.get<std::uint64_t>(), unit)
                                                         : fmt::format("{:.3g}{}", value.get<double>(), unit);
     bars.push_back({name.empty() ? "no patch" : name, value.get<double>(), label});
+    if (patches) bars.back().colour = patch_colour(name.empty() ? 0 : place);
   }
   std::sort(bars.begin(), bars.end(), [](const Bar& a, const Bar& b) { return a.value > b.value; });
   if (bars.size() > 16) bars.resize(16);
@@ -207,15 +210,16 @@ std::string run_charts(const fs::path& folder) {
                     {"catheters", of_solids("catheters.csv", "at_walls")},
                     {"solids", of_solids("solids.csv", "contacts")}});
   out += bar_chart({.title = "Contacts by patch"},
-                   bars_of(summary.value("/contacts/by_patch"_json_pointer, RunJson()), ""));
+                   bars_of(summary.value("/contacts/by_patch"_json_pointer, RunJson()), "", true));
   out += over_time("Particles", "particles", time,
                    {{"alive", alive},
                     {"injected", summed(steps["injected"])},
                     {"escaped", summed(steps["escaped"])},
                     {"absorbed", summed(steps["absorbed"])},
                     {"held", steps["held"]}});
-  out +=
-      over_time("Energy", "J", time, {{"kinetic", steps["kinetic_energy"]}, {"potential", steps["potential_energy"]}});
+  const RunJson unit = summary.value("energy_unit", RunJson());
+  out += over_time("Energy", unit.is_string() ? unit.get<std::string>() : "", time,
+                   {{"kinetic", steps["kinetic_energy"]}, {"potential", steps["potential_energy"]}});
   out += bar_chart({.title = "Seconds of the run, by part"}, bars_of(summary.value("seconds", RunJson()), " s"));
   return out;
 }

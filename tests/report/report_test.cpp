@@ -417,6 +417,19 @@ TEST(ReportCharts, ShowNothingOfNothing) {
   EXPECT_EQ(histogram_chart({.title = "t"}, 0, {}), "");
 }
 
+// Patch 0 is no patch. No two patches have one colour, however many there are.
+TEST(ReportCharts, EachPatchHasItsColour) {
+  std::set<std::string> colours;
+  for (std::size_t patch = 0; patch < 40; ++patch) colours.insert(patch_colour(patch));
+  EXPECT_EQ(colours.size(), 40U);
+  EXPECT_EQ(patch_colour(0), "var(--line)");
+  EXPECT_EQ(patch_colour(2), "var(--c0)");
+  EXPECT_EQ(patch_colour(10), "color-mix(in srgb,var(--c0) 65%,var(--text))");
+  const std::string bars = bar_chart({.title = "t"}, {{"a", 2.0, "2", patch_colour(3)}, {"b", 1.0, "1"}});
+  EXPECT_NE(bars.find("fill=\"var(--c1)\"><title>a: 2<"), std::string::npos) << bars;
+  EXPECT_NE(bars.find("fill=\"var(--c0)\"><title>b: 1<"), std::string::npos) << bars;
+}
+
 // A line of a million points keeps its peak.
 TEST(ReportCharts, ThinLinesOutAndKeepPeaks) {
   ChartSeries series{"s", {}, {}};

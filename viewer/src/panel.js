@@ -1,8 +1,8 @@
 // The panel beside the stage: colours of particles, walls by patch, the cutting plane.
 import { Vector3 } from 'three';
 import { css, checkbox, choice, element } from './dom.js';
-import { pageColours, scaleGradient, shortNumber } from './colours.js';
-import { wallColour, wallModes } from './walls.js';
+import { pageColours, patchColour, scaleGradient, shortNumber } from './colours.js';
+import { wallModes } from './walls.js';
 
 const quantities = [['speed', 'speed'], ['kind', 'place in the cell'], ['patch', 'patch met last'], ['residence', 'time in the scene'], ['id', 'number']];
 
@@ -88,7 +88,7 @@ export class Panel {
       const q = this.particles.colouredBy;
       this.legend.replaceChildren(q.categories
         ? element('div', { class: 'legend' }, ...q.categories.slice(0, 12).map((name, i) =>
-          element('span', { class: 'entry' }, swatch(page.categories[i % page.categories.length]), name)))
+          element('span', { class: 'entry' }, swatch(q.colour(i, page)), name)))
         : scaleLegend(q.low, q.high, q.unit));
     }
     this.patches.replaceChildren(...this.walls.usedPatches().map((patch) => {
@@ -97,7 +97,7 @@ export class Panel {
         this.walls.modes[patch] = value;
         this.changeWalls();
       });
-      return element('div', { class: 'patch' }, swatch(wallColour(patch, page)), element('span', { title: name }, name), mode);
+      return element('div', { class: 'patch' }, swatch(patchColour(patch, page)), element('span', { title: name }, name), mode);
     }));
     this.hits.replaceChildren(...(this.walls.byHits ? [scaleLegend(0, this.walls.hitsMax, 'hits, log scale')] : []));
   }

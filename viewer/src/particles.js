@@ -1,7 +1,7 @@
 // The particles: points of some pixels, or spheres of their own size.
 import { BufferAttribute, BufferGeometry, Points, ShaderMaterial } from 'three';
 import { readNumbers, Series } from './decode.js';
-import { pageColours, scaleColour } from './colours.js';
+import { pageColours, patchColour, scaleColour } from './colours.js';
 
 const vertexShader = `
 #include <clipping_planes_pars_vertex>
@@ -81,9 +81,13 @@ export class ParticleCloud {
       case 'speed':
         return { low: 0, high: this.speedMax, unit: 'm/s', value: (slot, f) => (this.speed.frame(f)[slot] / 255) * this.speedMax };
       case 'kind':
-        return { categories: kinds, value: (slot, f) => this.kind.frame(f)[slot] };
+        return { categories: kinds, colour: (i, page) => page.categories[i], value: (slot, f) => this.kind.frame(f)[slot] };
       case 'patch':
-        return { categories: ['none yet', ...this.patches.map((p) => p || 'no patch')], value: (slot, f) => this.patch.frame(f)[slot] };
+        return {
+          categories: ['none yet', ...this.patches.map((p) => p || 'no patch')],
+          colour: (i, page) => (i === 0 ? page.text : patchColour(i - 1, page)),
+          value: (slot, f) => this.patch.frame(f)[slot],
+        };
       case 'residence': {
         let high = 0;
         for (let slot = 0; slot < this.count; ++slot) high = Math.max(high, residence(slot, this.last[slot]));
@@ -101,7 +105,7 @@ export class ParticleCloud {
   colourOf(slot, f, page) {
     const q = this.colouredBy;
     const value = q.value(slot, f);
-    if (q.categories) return page.categories[value % page.categories.length];
+    if (q.categories) return q.colour(value, page);
     return scaleColour((value - q.low) / Math.max(q.high - q.low, 1e-300));
   }
 

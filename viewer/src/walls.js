@@ -1,12 +1,7 @@
 // The walls: one mesh for each patch, so that each can be shown, transparent or hidden; wires; hits as colours.
 import { BufferAttribute, BufferGeometry, DoubleSide, Group, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial } from 'three';
 import { readNumbers, Series } from './decode.js';
-import { linear, pageColours, scaleColour } from './colours.js';
-
-/** The first patch is neutral: most walls belong to it. */
-export function wallColour(patch, page) {
-  return page.categories[Math.max(patch - 1, 0) % page.categories.length];
-}
+import { linear, pageColours, patchColour, scaleColour } from './colours.js';
 
 export const wallModes = ['transparent', 'shown', 'hidden'];
 
@@ -95,7 +90,7 @@ export class Walls {
     const geometry = new BufferGeometry();
     geometry.setAttribute('position', new BufferAttribute(new Float32Array(3 * corners.length), 3));
     const isLine = patch < 0 || this.dimension === 2;
-    const colour = patch < 0 ? page.line : wallColour(patch, page);
+    const colour = patch < 0 ? page.line : patchColour(patch, page);
     const material = isLine ? new LineBasicMaterial({ transparent: true })
       : new MeshLambertMaterial({ side: DoubleSide, flatShading: true, transparent: true, depthWrite: false });
     const object = isLine ? new LineSegments(geometry, material) : new Mesh(geometry, material);

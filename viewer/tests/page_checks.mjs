@@ -139,6 +139,19 @@ async function optionsChangeThePicture({ page }) {
   for (let i = 0; i < await walls.count(); ++i) await walls.nth(i).selectOption('transparent');
 }
 
+/** A patch has one colour among the particles that met it and among the walls, and no other patch has it. */
+async function patchesHaveOneColour({ page }) {
+  const quantity = page.getByLabel('Colour by');
+  if (await quantity.count() === 0) return;
+  await quantity.selectOption('patch');
+  const [met, walls] = await page.evaluate(() => ['.legend .entry', '.patch'].map((kind) =>
+    [...document.querySelectorAll(`#view ${kind}`)].map((e) => [e.textContent, e.querySelector('i').style.background])));
+  const names = new Map(met);
+  for (const row of walls) row[0] = [...names.keys()].find((n) => row[0].startsWith(n)) ?? row[0];
+  for (const [name, colour] of walls) if (names.has(name)) assert.equal(names.get(name), colour, `two colours of ${name}`);
+  assert.equal(new Set(names.values()).size, names.size, 'two patches have one colour');
+}
+
 async function keysWork({ page }) {
   await page.locator('#view canvas').focus();
   await goTo(page, 0);
@@ -169,6 +182,7 @@ export async function checkReport(browser, file, schemes) {
     await drawsAndMoves(opened);
     await keysWork(opened);
     await optionsChangeThePicture(opened);
+    await patchesHaveOneColour(opened);
     await fitsNarrowScreens(opened);
     assert.deepEqual(said, [], 'the console has messages');
     assert.deepEqual(requests.filter((r) => r !== url && !r.startsWith('blob:') && !r.startsWith('data:')), [], 'the page asks for more than its file');
