@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -76,6 +77,25 @@ void report(const RunArguments& a, const Summary& summary, const std::string& fo
   fmt::print("{}", a.verbose ? text + histogram_text(summary) : text);
 }
 
+// A number of bytes in the largest unit of which there is one.
+std::string bytes_in_words(std::uint64_t bytes) {
+  static constexpr std::array<const char*, 5> units = {"bytes", "kB", "MB", "GB", "TB"};
+  auto value = static_cast<double>(bytes);
+  std::size_t unit = 0;
+  for (; value >= 999.5 && unit + 1 < units.size(); ++unit) value /= 1000.0;
+  return fmt::format("{:.{}f} {}", value, unit > 0 && value < 9.95 ? 1 : 0, units[unit]);
+}
+
+void announce(const RunArguments& a, const ExpectedOutput& expected, const std::string& folder) {
+  if (a.quiet || a.json) return;
+  fmt::print("{:<13}about {} in {}: ", "output", bytes_in_words(expected.bytes), folder);
+  if (expected.every == 0)
+    fmt::print("no frames\n");
+  else
+    fmt::print("{} frames, one each {} steps\n", expected.frames, expected.every);
+  std::fflush(stdout);
+}
+
 int status_of(const RunArguments& a, const Summary& summary, const std::string& folder) {
   if (summary.audit && summary.audit->failed > 0) {
     fmt::print(stderr, "dartcast: the audit failed {} times; the first: {}\n", summary.audit->failed,
@@ -114,12 +134,18 @@ int run(const RunArguments& a, Ranks* ranks) {
   WaitingLine waiting(loading_text(scene.environment.mesh), shows_progress);
   ProgressLine line;
   const Interruption interruption;
-  const Summary summary = run_scene(scene, options, [&](std::uint64_t step, std::uint64_t all) {
-    waiting.end();
-    if (shows_progress) line.show(step, all);
-    if (step == all) Interruption::last_step();
-    return !Interruption::asked_after_step();
-  });
+  const Summary summary = run_scene(
+      scene, options,
+      [&](std::uint64_t step, std::uint64_t all) {
+        waiting.end();
+        if (shows_progress) line.show(step, all);
+        if (step == all) Interruption::last_step();
+        return !Interruption::asked_after_step();
+      },
+      [&](const ExpectedOutput& expected) {
+        waiting.end();
+        announce(a, expected, options.folder.string());
+      });
   waiting.end();
   line.clear();
   if (!speaks) return done;

@@ -119,10 +119,20 @@ struct RunOptions {
 /// share the run, each calls its own, and one that returns false cancels the run on all.
 using Progress = std::function<bool(std::uint64_t done, std::uint64_t all)>;
 
+/// The files that a run will write, about: frames as large as the first one, and a row of stats.csv for each step.
+struct ExpectedOutput {
+  std::uint64_t every = 0;   ///< steps between two frames; 0: there are no frames
+  std::uint64_t frames = 0;  ///< from now on
+  std::uint64_t bytes = 0;
+};
+/// Called once, before the first step; where ranks share the run, by the first alone.
+using Announce = std::function<void(const ExpectedOutput&)>;
+
 /// Runs a scene, and reads the files that it names. Throws Error and its kinds if the scene, its mesh or its
 /// positions cannot be used, or output cannot be written; and RankFailed if another rank has failed. If ranks share
 /// the run, the first returns the summary of all.
-Summary run_scene(const Scene& scene, const RunOptions& options, const Progress& progress = {});
+Summary run_scene(const Scene& scene, const RunOptions& options, const Progress& progress = {},
+                  const Announce& announce = {});
 
 // Results for other programs.
 

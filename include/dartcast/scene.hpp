@@ -4,6 +4,7 @@
 // Some members may name a file instead of holding its data: load_scene_files() replaces the name by the data.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -255,11 +256,16 @@ enum class Compression : std::uint8_t { none, fast, small };
 
 /// The files that a run writes.
 struct OutputScene {
-  std::uint64_t every = 10;  ///< steps between two frames; 0: none
+  /// Steps between two frames; 0: no frames. None: default_every() of the run's steps.
+  std::optional<std::uint64_t> every = {};
   bool contacts = false;
-  bool report = true;  ///< report.html, if `every` > 0 (dartcast/report.hpp)
-  Compression compression = Compression::none;
+  bool report = true;  ///< report.html, where `every` > 0 (dartcast/report.hpp)
+  /// None: frames of the environment are `small`, all others are not compressed.
+  std::optional<Compression> compression = {};
 };
+
+/// Steps between two frames of a run that says nothing else: some 100 frames, and none before 10 steps.
+constexpr std::uint64_t default_every(std::uint64_t steps) { return std::max<std::uint64_t>(10, (steps + 99) / 100); }
 
 /// A scene: all that a run needs. docs/scene.md has the keys of its file.
 struct Scene {

@@ -349,6 +349,7 @@ void later_fields(Archive& a, SimulationState& s) {
 template <class Archive>
 void fields(Archive& a, Checkpoint& c) {
   fields(a, c.run);
+  a.value(c.every);
   fields(a, c.simulation.particles);
   values(a, c.files.stats_bytes, c.files.contacts_bytes);
   a.list(c.files.frames, [&](RecordingFrame& f) { values(a, f.step, f.time, f.pieces, f.environment_pieces); });

@@ -30,6 +30,7 @@ RunIdentity run_identity(const std::string& scene_text, const MeshPart& part, Ra
 
 struct Checkpoint {
   RunIdentity run;
+  std::uint64_t every = 0;  ///< steps between two frames
   SimulationState simulation;
   FilesProgress files;
   std::uint64_t held = 0;  ///< in the last step

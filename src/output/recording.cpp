@@ -119,18 +119,18 @@ Recording::Recording(const RunFolder& run, Options options, std::optional<Enviro
   } else {
     if (!scene_text.empty()) write_bytes(folder_ / "scene.toml", scene_text);
     if (!in_frames)
-      write_frame_file(writing_, folder_ / "environment.vtu", environment_->at_rest(), options_.compression);
+      write_frame_file(writing_, folder_ / "environment.vtu", environment_->at_rest(), options_.of_environment());
   }
   if (!in_frames) environment_.reset();
 }
 
 void Recording::add_frame(const Simulation& simulation, std::span<const RecordingFrame> frames) {
   const RecordingFrame& frame = frames.back();
-  const XmlDataSet particles = write_particles(writing_, folder_, simulation, frame, 0, options_.compression);
+  const XmlDataSet particles = write_particles(writing_, folder_, simulation, frame, 0, options_.of_particles());
   if (frame.pieces > 1) write_index(writing_, folder_, frame, "particles", ".vtp", frame.pieces, particles);
   if (shows_environment(options_, frame)) {
     const XmlDataSet data =
-        write_environment(writing_, folder_, simulation, *environment_, frame, 0, options_.compression);
+        write_environment(writing_, folder_, simulation, *environment_, frame, 0, options_.of_environment());
     if (frame.environment_pieces > 1)
       write_index(writing_, folder_, frame, "environment", ".vtu", frame.environment_pieces, data);
   }

@@ -20,9 +20,12 @@ class Recording final : public Recorder {
     bool changes = false;  ///< the environment: a frame of it at each time
     bool surgery = false;  ///< the table has a column for particles in opened cells
     bool contacts = false;
-    Compression compression = Compression::none;
+    std::optional<Compression> compression = {};
     std::uint32_t pieces = 1;              ///< of a frame of particles: one for each rank
-    std::uint32_t environment_pieces = 1;  ///< of a frame of the environment, if ranks have parts of it
+    std::uint32_t environment_pieces = 1;  ///< of a frame of the environment, where ranks have parts of it
+
+    [[nodiscard]] Compression of_particles() const { return compression.value_or(Compression::none); }
+    [[nodiscard]] Compression of_environment() const { return compression.value_or(Compression::small); }
   };
 
   /// Makes the folder, or takes over one that is empty or holds an earlier run, whose files are removed. Throws Error,

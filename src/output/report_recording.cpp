@@ -137,7 +137,7 @@ std::string text_of(const EventReport& e) {
 
 }  // namespace
 
-ReportRecording::ReportRecording(const RunFolder& run, const Scene& scene, const Simulation& simulation, bool goes_on)
+ReportRecording::ReportRecording(const RunFolder& run, std::uint64_t every, const Simulation& simulation, bool goes_on)
     : Recorder(run),
       simulation_(simulation),
       file_(run.table(file_name, recorded_line, &FilesProgress::report_bytes)),
@@ -148,7 +148,7 @@ ReportRecording::ReportRecording(const RunFolder& run, const Scene& scene, const
     return;
   }
   header_.dimension = simulation.environment().map().dimension();
-  header_.every = scene.output.every;
+  header_.every = every;
   header_.origin = middle_of(simulation.environment());
   file_.append(chunk_of(header_));
   add_arrivals(simulation, simulation.time());

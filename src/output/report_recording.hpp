@@ -29,7 +29,7 @@ class ReportRecording final : public Recorder {
  public:
   /// The simulation outlives it, and is in the state that the run goes on from. `goes_on`: the run before has not done
   /// all steps.
-  ReportRecording(const RunFolder& run, const Scene& scene, const Simulation& simulation, bool goes_on);
+  ReportRecording(const RunFolder& run, std::uint64_t every, const Simulation& simulation, bool goes_on);
 
   void update_after_edit(const Environment& environment) override;
   void add_step(const Simulation& simulation, const SimulationStep& step, const StepSums& sums) override;

@@ -32,6 +32,10 @@ bool is_spread(const RunOptions& options) {
   return options.partition == Partition::cells && are_several(options.ranks);
 }
 
+std::uint64_t steps_of(const Scene& scene, const RunOptions& options) {
+  return options.steps.value_or(scene.motion.steps);
+}
+
 // The parts of checkpoints that this one replaces. Those of later ones may be on their way.
 void remove_earlier_parts(const std::filesystem::path& folder, std::uint64_t step) {
   std::vector<std::filesystem::path> earlier;
@@ -54,7 +58,8 @@ RunOutput::RunOutput(const Scene& scene, const RunOptions& options, Summary& sum
                          scene.output.compression,
                          options.ranks != nullptr ? options.ranks->size() : 1,
                          is_spread(options) ? options.ranks->size() : 1},
-      every_(scene.output.every),
+      every_(scene.output.every.value_or(default_every(steps_of(scene, options)))),
+      steps_(steps_of(scene, options)),
       resume_(options.resume),
       threads_(options.threads),
       ranks_(options.ranks),
@@ -67,18 +72,19 @@ RunOutput::RunOutput(const Scene& scene, const RunOptions& options, Summary& sum
                               : run_identity(scene.text, std::get<MeshData>(scene.environment.mesh), scene.seed);
 }
 
-void RunOutput::find_checkpoint(std::uint64_t steps) {
+void RunOutput::find_checkpoint() {
   if (folder().empty() || !resume_) return;
   found_ = read_checkpoint(file(), identity_);
   if (!found_) return;
+  every_ = found_->every;
   add_parts(*found_);
   if (const auto* mesh = std::get_if<MeshData>(&scene_.environment.mesh))
     record_.emplace(*mesh);  // it follows the edits that are made again
   const std::uint64_t done = found_->simulation.particles.steps;
-  if (done > steps)
+  if (done > steps_)
     throw Error(
         fmt::format("{}: {} steps are done already; ask for as many or more with --steps", folder().string(), done));
-  goes_on_ = done < steps;
+  goes_on_ = done < steps_;
   if (goes_on_) std::erase_if(found_->files.frames, [&](const auto& f) { return !on_schedule(f.step); });
 }
 
@@ -138,11 +144,11 @@ void RunOutput::open_files(const Simulation& simulation) {
   double* const write = &summary_.seconds_write;
   recorders_.push_back({write, std::make_unique<Recording>(run, recording_options_, record_, scene_.text)});
   recorders_.push_back({write, std::make_unique<SolidsRecording>(run, scene_)});
-  recorders_.push_back({write, std::make_unique<StatisticsRecording>(run, scene_)});
+  recorders_.push_back({write, std::make_unique<StatisticsRecording>(run, scene_, every_)});
   if (!wants_report()) return;
   const ScopeTimer timer(summary_.seconds_report);
   recorders_.push_back(
-      {&summary_.seconds_report, std::make_unique<ReportRecording>(run, scene_, simulation, goes_on_)});
+      {&summary_.seconds_report, std::make_unique<ReportRecording>(run, every_, simulation, goes_on_)});
 }
 
 void RunOutput::add_step(const Simulation& simulation, const SimulationStep& step) {
@@ -186,9 +192,9 @@ void RunOutput::write_part(const Simulation& simulation) {
   const Recording::Options& o = recording_options_;
   const RecordingFrame frame = frame_of(simulation);
   if (every_ > 0) {
-    write_particles(*writing_, folder(), simulation, frame, ranks_->rank(), o.compression);
+    write_particles(*writing_, folder(), simulation, frame, ranks_->rank(), o.of_particles());
     if (frame.environment_pieces > 1 && shows_environment(o, frame))
-      write_environment(*writing_, folder(), simulation, *record_, frame, ranks_->rank(), o.compression);
+      write_environment(*writing_, folder(), simulation, *record_, frame, ranks_->rank(), o.of_environment());
   }
   ParticleSystemState part = simulation.checkpoint().state().particles;
   part.totals.seconds_detect = part.totals.seconds_deform = 0.0;
@@ -220,7 +226,7 @@ void RunOutput::write_frame(const Simulation& simulation) {
   for (const Clocked& c : recorders_) c.recorder->save(files);
   const std::uint64_t audited = summary_.audit ? summary_.audit->checked : 0;
   auto checkpoint = std::make_shared<Checkpoint>(Checkpoint{
-      identity_, simulation.checkpoint().state(), std::move(files), summary_.held, audited, std::move(parts)});
+      identity_, every_, simulation.checkpoint().state(), std::move(files), summary_.held, audited, std::move(parts)});
   writing_->add(checkpoint->simulation.particles.table.bytes(), [checkpoint, path = file()] {
     write_checkpoint(path, *checkpoint);
     remove_earlier_parts(path.parent_path(), checkpoint->simulation.particles.steps);
@@ -233,6 +239,25 @@ void RunOutput::record_frame(const Simulation& simulation) {
     const ScopeTimer timer(*c.seconds);
     c.recorder->add_frame(simulation, frames_);
   }
+}
+
+// It measures the frame of the start, or the last one of the run that goes on.
+ExpectedOutput RunOutput::expected(const Simulation& simulation) const {
+  ExpectedOutput all;
+  if (!writing_) return all;
+  const std::uint64_t done = simulation.steps();
+  all.every = every_;
+  all.frames = every_ == 0 ? 0 : steps_ / every_ - done / every_ + (steps_ % every_ != 0 && done < steps_ ? 1 : 0);
+  if (!found_ && every_ > 0) ++all.frames;
+  writing_->finish();
+  std::uint64_t of_frame = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder())) {
+    if (!frames_.empty() && frame_step(entry.path().filename().string()) == frames_.back().step)
+      of_frame += entry.file_size();
+  }
+  static constexpr std::uint64_t row_of_table = 120;
+  all.bytes = all.frames * of_frame + (steps_ - done) * row_of_table;
+  return all;
 }
 
 void RunOutput::finish(const Simulation& simulation) {

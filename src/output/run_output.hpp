@@ -30,8 +30,8 @@ class RunOutput {
   /// Takes the folder, if it exists, before anything is read from it. `scene`: with its files loaded. All outlive it.
   RunOutput(const Scene& scene, const RunOptions& options, Summary& summary);
 
-  /// Reads the checkpoint to go on from to so many steps; none: the run starts anew.
-  void find_checkpoint(std::uint64_t steps);
+  /// Reads the checkpoint to go on from; none: the run starts anew.
+  void find_checkpoint();
   [[nodiscard]] const std::optional<Checkpoint>& found() const { return found_; }
 
   /// After each edit of the environment.
@@ -44,6 +44,8 @@ class RunOutput {
   [[nodiscard]] bool on_schedule(std::uint64_t step) const { return every_ > 0 && step % every_ == 0; }
   /// Before the first step and after each: a frame and a checkpoint if the scene wants one, and for the last step.
   void add_frame(const Simulation& simulation, bool last);
+  /// The size of all that the run will write from now on. After the first frame, before the next step; on the first rank.
+  [[nodiscard]] ExpectedOutput expected(const Simulation& simulation) const;
   void finish(const Simulation& simulation);
 
  private:
@@ -75,6 +77,7 @@ class RunOutput {
   std::filesystem::path folder_;
   Recording::Options recording_options_;
   std::uint64_t every_;
+  std::uint64_t steps_;
   bool resume_;
   bool goes_on_ = false;  // it was resumed, and has steps to do
   Threads threads_;

@@ -115,8 +115,9 @@ class Run {
     if (summary_.audit) summary_.audit->checked = output.found()->audited;
   }
 
-  void run(const Progress& progress) {
+  void run(const Progress& progress, const Announce& announce) {
     if (!output_.found()) output_.add_frame(simulation_, steps_ == 0);
+    if (announce && ParticleShare(simulation_.options().ranks).is_first()) announce(output_.expected(simulation_));
     while (simulation_.steps() < steps_ && !summary_.cancelled) {
       const SimulationStep& step = simulation_.step();
       summary_.held = step.report.held.size();
@@ -225,7 +226,7 @@ void keep_first(const StepReplay& step, const std::filesystem::path& folder, Sum
 
 }  // namespace
 
-Summary run_scene(const Scene& scene, const RunOptions& options, const Progress& progress) {
+Summary run_scene(const Scene& scene, const RunOptions& options, const Progress& progress, const Announce& announce) {
   if (!options.folder.empty() && ParticleShare(options.ranks).is_first()) check_output_folder(options.folder);
   if (options.steps.value_or(0) > max_steps)
     throw InvalidArgument(fmt::format("run: {} steps; give at most {}", *options.steps, max_steps));
@@ -247,7 +248,7 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   summary.warnings = std::move(loaded.warnings);
   const std::uint64_t steps = options.steps.value_or(scene.motion.steps);
   RunOutput output(loaded.scene, options, summary);
-  output.find_checkpoint(steps);
+  output.find_checkpoint();
   describe_mesh(loaded.scene, options, summary);
   summary.seconds_load = load.seconds();
   const Stopwatch locate;
@@ -260,7 +261,7 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   if (options.audit && !options.folder.empty())
     simulation->set_replay_hook([&](const StepReplay& step) { keep_first(step, options.folder, summary); });
   try {
-    Run(*simulation, output, steps, summary).run(progress);
+    Run(*simulation, output, steps, summary).run(progress, announce);
   } catch (const InternalError& e) {
     throw_with_file(e, options.folder, summary);
   }

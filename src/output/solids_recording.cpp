@@ -49,7 +49,7 @@ bool lists_contacts(const Scene& scene) {
 }  // namespace
 
 SolidsRecording::SolidsRecording(const RunFolder& run, const Scene& scene)
-    : Recorder(run), compression_(scene.output.compression) {
+    : Recorder(run), compression_(scene.output.compression.value_or(Compression::none)) {
   if (!scene.bodies.empty()) bodies_ = run.table("bodies.csv", bodies_header, &FilesProgress::bodies_bytes);
   if (!scene.catheters.empty())
     catheters_ = run.table("catheters.csv", catheters_header, &FilesProgress::catheters_bytes);

@@ -23,10 +23,10 @@ std::string walls_name(const RecordingFrame& frame) { return frame_name("walls",
 
 }  // namespace
 
-StatisticsRecording::StatisticsRecording(const RunFolder& run, const Scene& scene)
+StatisticsRecording::StatisticsRecording(const RunFolder& run, const Scene& scene, std::uint64_t every)
     : Recorder(run),
-      every_(scene.output.every),
-      compression_(scene.output.compression),
+      every_(every),
+      compression_(scene.output.compression.value_or(Compression::none)),
       scene_(scene.statistics),
       at_begin_(scene.statistics.options.planes.size()) {
   const StatisticsOptions& options = scene_.options;

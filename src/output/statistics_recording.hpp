@@ -18,7 +18,7 @@ namespace dartcast {
 /// end.
 class StatisticsRecording final : public Recorder {
  public:
-  StatisticsRecording(const RunFolder& run, const Scene& scene);
+  StatisticsRecording(const RunFolder& run, const Scene& scene, std::uint64_t every);
 
   void add_step(const Simulation& simulation, const SimulationStep& step, const StepSums& sums) override;
   void add_frame(const Simulation& simulation, std::span<const RecordingFrame> frames) override;

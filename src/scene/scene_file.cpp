@@ -238,11 +238,14 @@ class SceneReader {
 
   static OutputScene output(TomlTable t) {
     OutputScene scene;
-    t.get("every", scene.every, 0, max_steps);
+    std::uint64_t every = 0;
+    if (t.get("every", every, 0, max_steps)) scene.every = every;
     t.get("contacts", scene.contacts);
     t.get("report", scene.report);
-    t.get("compression", scene.compression,
-          {{"none", Compression::none}, {"fast", Compression::fast}, {"small", Compression::small}});
+    auto compression = Compression::none;
+    if (t.get("compression", compression,
+              {{"none", Compression::none}, {"fast", Compression::fast}, {"small", Compression::small}}))
+      scene.compression = compression;
     t.finish();
     return scene;
   }

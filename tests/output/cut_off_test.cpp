@@ -206,7 +206,7 @@ TEST(CutOff, PartsAreRemoved) {
 
 TEST(OutputCompression, FramesHoldTheSameInEach) {
   const test::Folder temporary;
-  run(temporary / "none", false);
+  run(temporary / "none", false, scene_text + "compression = \"none\"\n");
   std::uintmax_t before = fs::file_size(temporary / "none" / "environment_000010.vtu");
   for (const std::string name : {"fast", "small"}) {
     const fs::path folder = temporary / name;
@@ -231,6 +231,10 @@ TEST(OutputCompression, FramesHoldTheSameInEach) {
     EXPECT_LT(size, before);
     before = size;
   }
+  run(temporary / "default", false);
+  EXPECT_EQ(fs::file_size(temporary / "default" / "environment_000010.vtu"), before);
+  EXPECT_EQ(fs::file_size(temporary / "default" / "particles_000010.vtp"),
+            fs::file_size(temporary / "none" / "particles_000010.vtp"));
 }
 
 TEST(OutputCompression, OtherWordsAreRefused) {

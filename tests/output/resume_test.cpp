@@ -89,6 +89,33 @@ class Resume : public testing::Test {
   fs::path two = temporary / "two";
 };
 
+// Without the key the interval follows from the steps of the run that began, and stays with --resume.
+TEST_F(Resume, TheIntervalOfFramesIsKept) {
+  std::string text = scene_text;
+  text.erase(text.find("every = 10\n"), 11);
+  RunOptions options;
+  ExpectedOutput expected;
+  const auto go = [&](const fs::path& to, std::uint64_t steps, bool resume) {
+    options.folder = to;
+    options.steps = steps;
+    options.resume = resume;
+    run_scene(parse_scene(text, "test.toml"), options, {}, [&](const ExpectedOutput& e) { expected = e; });
+  };
+  go(one, 47, false);
+  EXPECT_EQ(expected.every, 10U);
+  EXPECT_EQ(expected.frames, 6U);
+  go(two, 1001, false);
+  EXPECT_EQ(expected.every, 11U);
+  EXPECT_EQ(expected.frames, 92U);
+  EXPECT_GT(expected.bytes, 92U * 5000);
+  EXPECT_TRUE(fs::exists(two / "particles_000011.vtp"));
+  EXPECT_FALSE(fs::exists(two / "particles_000010.vtp"));
+  go(two, 1201, true);
+  EXPECT_EQ(expected.every, 11U);
+  EXPECT_EQ(expected.frames, 19U);
+  EXPECT_TRUE(fs::exists(two / "particles_001199.vtp"));
+}
+
 TEST_F(Resume, ARunCutOffAnywhereEndsAsIfItWereNot) {
   const Summary whole = run(one, false, 47);
   EXPECT_GT(whole.totals.absorbed, 0U);

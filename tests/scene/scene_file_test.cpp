@@ -32,7 +32,8 @@ TEST(SceneFile, DefaultsAreThoseOfTheDocumentation) {
   EXPECT_EQ(s.contact.general.kind, WallResponseKind::reflect);
   EXPECT_EQ(s.contact.general.restitution, 1.0);
   EXPECT_EQ(s.contact.general.friction, 0.0);
-  EXPECT_EQ(s.output.every, 10U);
+  EXPECT_EQ(s.output.every, std::nullopt);
+  EXPECT_EQ(s.output.compression, std::nullopt);
   EXPECT_FALSE(s.output.contacts);
   EXPECT_TRUE(s.particles.empty());
   const auto& b = std::get<BoxOptions>(s.environment.mesh);
