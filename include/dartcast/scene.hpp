@@ -101,6 +101,9 @@ struct DeformationScene {
   /// whole number; or one .pvd file or case of OpenFOAM, which give the times, too. Empty: the frames of `step`.
   std::vector<std::filesystem::path> frames;
   double spacing = 0.0;  ///< frames: s from one to the next, the first at 0; 0: by the step's times
+  /// frames: a point array of three components, which is added to the points of the scene's mesh. Empty: the points of
+  /// the files count.
+  std::string displacement{};
 };
 
 /// Particles at random places of the free cells.
@@ -198,7 +201,9 @@ struct FieldScene {
   std::vector<std::filesystem::path> files;
   std::vector<double> times;  ///< s, increasing, one for each array or file; empty: by `spacing`
   double spacing = 0.0;       ///< s from one time to the next, the first at 0; 0: by `times`
-  double period = 0.0;        ///< FieldSamples::period
+  /// Whether the last of the files counts alone, at all times; none: as a case of OpenFOAM says, else not.
+  std::optional<bool> steady = {};
+  double period = 0.0;                                  ///< FieldSamples::period
   Interpolation interpolation = Interpolation::linear;  ///< FieldSamples::interpolation
   /// If it can read, used instead of all above but `frame`. load_scene_files() makes it for files. They are read
   /// while the simulation runs.

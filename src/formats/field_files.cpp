@@ -101,8 +101,11 @@ void read_arrays_of_file(FieldScene& field, const MeshData& mesh, const CellsOfS
 void read_field_files(FieldScene& field, const MeshData& mesh, const CellsOfScene& cells, const ReadOptions& options) {
   if (field.files.empty() || field.samples.read) return;
   if (is_pattern(field.array)) return read_arrays_of_file(field, mesh, cells, options);
-  FieldSeries series =
-      file_series({fmt::format("the field '{}'", field.array), field.array, field.files, field.times, field.spacing});
+  const bool of_case = field.files.size() == 1 && is_openfoam_case(field.files.front());
+  const bool steady = field.steady.value_or(of_case && is_steady_openfoam(field.files.front()));
+  FieldSeries series = file_series({fmt::format("the field '{}'", field.array), field.array, field.files, field.times,
+                                    steady && !of_case ? 1.0 : field.spacing});
+  if (steady) series = {{series.files.back()}, {0.0}};
   check_exist(series.files);
   auto files = std::make_shared<FieldFiles>(field, mesh, cells, options, series.files);
   field.samples.place = files->find_place();
@@ -111,6 +114,28 @@ void read_field_files(FieldScene& field, const MeshData& mesh, const CellsOfScen
   field.samples.interpolation = field.interpolation;
   field.samples.read = [files](std::size_t k) { return (*files)(k); };
   field.files.clear();
+}
+
+FrameReader displaced_frames(DeformationScene& scene, const MeshData& mesh, const CellsOfScene& cells, double scale,
+                             const ReadOptions& options) {
+  FieldScene field;
+  field.array = scene.displacement;
+  field.at = FieldPlace::points;
+  field.files = std::exchange(scene.frames, {});
+  field.times = scene.step.times;
+  field.spacing = scene.spacing;
+  field.steady = false;
+  try {
+    read_field_files(field, mesh, cells, options);
+  } catch (const Error& e) {
+    throw InvalidMesh(fmt::format("deformation: the displacement '{}': {}", scene.displacement, e.what()));
+  }
+  scene.step.times = field.samples.times;
+  return [read = std::move(field.samples.read), rest = mesh.points, scale](std::size_t frame) {
+    std::vector<Vec3> points = read(frame);
+    for (std::size_t i = 0; i < points.size(); ++i) points[i] = rest[i] + points[i] * scale;
+    return points;
+  };
 }
 
 }  // namespace dartcast

@@ -38,6 +38,10 @@ FieldSeries openfoam_points(const std::filesystem::path& path);
 /// The times of a case with a field, as paths CASE/TIME. Throws likewise.
 FieldSeries openfoam_field(const std::filesystem::path& path, std::string_view field);
 
+/// Whether system/fvSchemes of a case says `ddtSchemes { default steadyState; }`: its times are then iterations. False
+/// where the file is missing or says nothing of the kind.
+bool is_steady_openfoam(const std::filesystem::path& path);
+
 /// The points of CASE/TIME in a mesh of space, by label, as the file has them. Throws as parse_openfoam().
 std::vector<Vec3> openfoam_points_at(const std::filesystem::path& path, const ReadOptions& options);
 

@@ -40,6 +40,11 @@ FrameReader frame_reader(std::vector<std::filesystem::path> files, const MeshDat
 /// exist is checked here. `mesh`: of the scene, read. Throws Error and its kinds, naming the file.
 void read_field_files(FieldScene& field, const MeshData& mesh, const CellsOfScene& cells, const ReadOptions& options);
 
+/// A reader of frames that are the mesh's points plus an array of the deformation's files, which it takes; their times go
+/// to its step. `scale`: of displacements. Throws likewise.
+FrameReader displaced_frames(DeformationScene& scene, const MeshData& mesh, const CellsOfScene& cells, double scale,
+                             const ReadOptions& options);
+
 /// Reads .csv, with the columns x, y, z and, if the file gives them, vx, vy, vz and radius. Or reads .vtp, with the
 /// points' arrays velocity (of 3 components) and radius. Other arrays of a run's frames are skipped: id, cell, kind,
 /// contacts, held. Only the option `max_memory` has an effect. Throws Error, with the file, if another column or array

@@ -177,6 +177,26 @@ class Run {
   Summary& summary_;
 };
 
+// A run much shorter than the first interval of its samples sees them hardly change: their times may be iterations, or in
+// another unit.
+void warn_of_short_run(const Scene& scene, std::uint64_t steps, std::vector<Finding>& warnings) {
+  constexpr double small_share = 0.05;
+  const double duration = static_cast<double>(steps) * scene.motion.dt;
+  const auto check = [&](const std::string& owner, const std::vector<double>& times) {
+    if (steps == 0 || times.size() < 2 || duration >= small_share * (times[1] - times[0])) return;
+    warnings.push_back({"short_run",
+                        1,
+                        {},
+                        fmt::format("series of samples that hardly changes in the run: {} has the times {:.6g} and "
+                                    "{:.6g} s, and the run takes {:.6g} s; "
+                                    "are the times in seconds, and no iterations (steady = true)?",
+                                    owner, times[0], times[1], duration)});
+  };
+  for (const DeformationScene& s : scene.deformation) check("the deformation", s.step.times);
+  check("the field", scene.motion.field.samples.times);
+  check("the force", scene.motion.force.samples.times);
+}
+
 // The scene with the run's own options.
 Scene scene_to_run(const Scene& scene, const RunOptions& options) {
   Scene wanted = scene;
@@ -247,6 +267,7 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   summary.skipped = std::move(loaded.skipped);
   summary.warnings = std::move(loaded.warnings);
   const std::uint64_t steps = options.steps.value_or(scene.motion.steps);
+  warn_of_short_run(loaded.scene, steps, summary.warnings);
   RunOutput output(loaded.scene, options, summary);
   output.find_checkpoint();
   describe_mesh(loaded.scene, options, summary);

@@ -25,6 +25,11 @@ void read_table(TomlTable t, const std::filesystem::path& folder, FieldScene& fi
   const bool times = t.get("times", field.times);
   const bool spacing = t.get("spacing", field.spacing, Range::positive);
   if (times && spacing) t.fail("spacing", "give times or spacing, not both");
+  bool steady = false;
+  if (t.get("steady", steady)) {
+    field.steady = steady;
+    if (files.empty()) t.fail("steady", "steady belongs to files: an array of the mesh alone is steady");
+  }
   t.get("period", field.period, Range::positive);
   t.get("interpolation", field.interpolation, {{"linear", Interpolation::linear}, {"cubic", Interpolation::cubic}});
   t.finish();

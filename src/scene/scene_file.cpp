@@ -13,6 +13,7 @@
 #include "formats/file_series.hpp"
 #include "scene/scene_keys.hpp"
 #include "scene/toml_table.hpp"
+#include "simulation/series.hpp"
 
 namespace dartcast {
 
@@ -115,12 +116,14 @@ class SceneReader {
     t.require("files", "mesh files with the same points, one per time; or a .pvd file or case of OpenFOAM");
     t.get("files", files);
     if (files.empty()) t.fail("files", "files must not be empty");
+    if (t.get("displacement", scene.displacement) && scene.displacement.empty())
+      t.fail("displacement", "displacement must be the name of a point array of three components");
     const bool times = t.get("times", scene.step.times);
     if (t.get("spacing", scene.spacing, Range::positive) && times) t.fail("spacing", "give times or spacing, not both");
     t.get("interpolation", scene.step.interpolation,
           {{"linear", Interpolation::linear}, {"cubic", Interpolation::cubic}});
     t.get("period", scene.step.cycle, Range::positive);
-    const bool series = files.size() == 1 && names_series(folder_ / files.front());
+    const bool series = files.size() == 1 && (names_series(folder_ / files.front()) || is_pattern(scene.displacement));
     if (!series && scene.spacing == 0.0 && files.size() != scene.step.times.size())
       t.fail(times ? "times" : "files",
              fmt::format("there are {} times for {} files", scene.step.times.size(), files.size()));

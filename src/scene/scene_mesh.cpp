@@ -82,6 +82,13 @@ void read_all_but_mesh(Scene& scene, const MeshData* mesh, const ReadOptions& op
   const CellsOfScene cells = mesh != nullptr && scene.environment.skip_bad_cells ? CellsOfScene(*mesh) : CellsOfScene();
   for (DeformationScene& s : scene.deformation) {
     if (s.frames.empty()) continue;
+    if (!s.displacement.empty()) {
+      if (mesh == nullptr)
+        throw InvalidArgument(
+            "deformation: a displacement needs the whole mesh: ranks that have parts of it cannot read it");
+      s.step.reader = displaced_frames(s, *mesh, cells, scene.environment.scale, read);
+      continue;
+    }
     FieldSeries series = file_series({"deformation", {}, std::exchange(s.frames, {}), s.step.times, s.spacing});
     s.step.times = std::move(series.times);
     s.step.reader = frame_reader(std::move(series.files), mesh, cells, scene.environment.scale, read);

@@ -164,6 +164,15 @@ field = { array = "velocity", at = "points", frame = "mesh" }
 integrator = "rk4"
 )",
                                                R"([environment]
+mesh = "heart_00.vtu"
+[[particles]]
+count = 50
+[motion]
+dt = 1e-2
+steps = 10
+field = { array = "velocity", files = "heart_*.vtu", steady = true }
+)",
+                                               R"([environment]
 mesh = "vessel.vtu"
 linearise = true
 skip_bad_cells = true

@@ -1,4 +1,5 @@
 // Frames from files: the fast way gives what reading each file as a mesh gives, in points and in refusals.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -191,6 +192,52 @@ TEST_F(FrameFilesTest, AMeshStaysValidWhileItsCellsArePositive) {
 }
 
 // A scene holds a reader then, and the first file has been read.
+// As SimVascular's solver writes results: the points stay, and an array has their displacement.
+TEST_F(FrameFilesTest, ADisplacementIsAddedToThePoints) {
+  const MeshData rest = test::cubes(3, CellType::tetrahedron);
+  const auto with_displacement = [&](const std::string& array, double t, MeshData mesh) {
+    std::vector<double> values;
+    for (const Vec3& x : rest.points) {
+      for (const double d : {0.1 * t * x.y, 0.2 * t, -0.05 * t * x.x}) values.push_back(d);
+    }
+    mesh.point_data.push_back({array, 3, values});
+    return mesh;
+  };
+  MeshData all = rest;
+  for (int k = 0; k < 3; ++k) {
+    write(fmt::format("result_{:03}.vtu", k), with_displacement("Displacement", k, rest));
+    all = with_displacement(fmt::format("d_{:02}", k), k, all);
+  }
+  write("all.vtu", all);
+  write("mesh.vtu", rest);
+  const auto load = [&](const std::string& keys) {
+    return load_scene_files(
+               parse_scene("[environment]\nmesh = 'mesh.vtu'\nscale = 0.5\n[[deformation]]\nkind = 'frames'\n" + keys,
+                           folder / "scene.toml"))
+        .scene;
+  };
+  for (const char* keys : {"files = 'result_*.vtu'\nspacing = 0.1\ndisplacement = 'Displacement'\n",
+                           "files = ['result_000.vtu', 'result_001.vtu', 'result_002.vtu']\ntimes = [0.0, 0.1, 0.2]\n"
+                           "displacement = 'Displacement'\n",
+                           "files = 'all.vtu'\nspacing = 0.1\ndisplacement = 'd_*'\n"}) {
+    SCOPED_TRACE(keys);
+    const DeformationStep step = load(keys).deformation.front().step;
+    ASSERT_EQ(step.times, (std::vector<double>{0.0, 0.1, 0.2}));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto t = static_cast<double>(k);
+      const std::vector<Vec3> points = step.reader(k);
+      ASSERT_EQ(points.size(), rest.points.size());
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const Vec3& x = rest.points[i];
+        test::expect_near(points[i], (x + Vec3{0.1 * t * x.y, 0.2 * t, -0.05 * t * x.x}) * 0.5, 1e-15);
+      }
+    }
+  }
+  test::expect_parts(
+      test::error_text([&] { (void)load("files = 'result_*.vtu'\nspacing = 0.1\ndisplacement = 'D'\n"); }),
+      {"deformation", "displacement 'D'", "Displacement (3)"});
+}
+
 TEST_F(FrameFilesTest, ScenesReadTheirFramesLater) {
   const MeshData mesh = test::cubes(2);
   write("a.vtu", mesh);

@@ -97,6 +97,36 @@ TEST_F(OpenFoamScene, TimesAreFramesFromConstantOn) {
   }
 }
 
+// The times of a steady case are iterations: the last one counts.
+TEST_F(OpenFoamScene, TheLastTimeOfASteadyCaseIsItsField) {
+  write_case("case", {});
+  const auto samples = [&](const std::string& keys) {
+    return load("[motion]\nfield = { array = 'U', files = ['case']" + keys + " }\n").motion.field.samples;
+  };
+  const auto write_schemes = [&](const std::string& text) {
+    write_bytes(folder_ / "case/system/fvSchemes",
+                "FoamFile { version 2.0; format ascii; class dictionary; object fvSchemes; }\n" + text);
+  };
+  EXPECT_EQ(samples("").times.size(), 4U);
+  EXPECT_EQ(samples(", steady = true").times, std::vector<double>{0.0});
+  EXPECT_EQ(samples(", steady = true").read(0), velocities(box().cell_count(), 20.0));
+  for (const char* text :
+       {"ddtSchemes { default steadyState; }\n",
+        "// ddtSchemes { default Euler; }\ngradSchemes { default Gauss linear; }\nddtSchemes\n{\n  ddt(U) "
+        "Euler;\n  default  steadyState;\n}\n"}) {
+    write_schemes(text);
+    EXPECT_EQ(samples("").times, std::vector<double>{0.0}) << text;
+    EXPECT_EQ(samples("").read(0), velocities(box().cell_count(), 20.0));
+    EXPECT_EQ(samples(", steady = false").times.size(), 4U);
+  }
+  for (const char* text :
+       {"ddtSchemes { default Euler; }\n", "gradSchemes { default steadyState; }\n", "ddtSchemes {", "}"}) {
+    write_schemes(text);
+    EXPECT_EQ(samples("").times.size(), 4U) << text;
+  }
+  expect_error("[motion]\nfield = { array = 'U', steady = true }\n", {"steady belongs to files"});
+}
+
 TEST_F(OpenFoamScene, APlaceAtZeroIsTheFirstFrame) {
   write_case("case", {});
   FoamWriter(folder_ / "case", {}).points("0", swayed(box().points, 3.0));

@@ -8,6 +8,7 @@
 
 #include "dartcast/error.hpp"
 #include "formats/openfoam/foam_case.hpp"
+#include "formats/openfoam/foam_file.hpp"
 #include "formats/openfoam/poly_cells.hpp"
 
 namespace dartcast {
@@ -110,6 +111,42 @@ FieldSeries openfoam_field(const fs::path& path, std::string_view field) {
   if (series.files.empty())
     throw InvalidMesh(fmt::format("{}: no time of the case has a field {}", from.root().string(), field));
   return series;
+}
+
+namespace {
+
+// The value of `default` in the block of this name; empty where there is none.
+std::string default_scheme(FoamFile& file, std::string_view block) {
+  while (file.next() != '\0') {
+    if (file.next() == '#') {
+      file.directive();
+    } else if (file.next() == '$') {
+      file.skip_entry();
+    } else if (file.word("a key") != block) {
+      file.skip_entry();
+    } else {
+      file.expect('{', "behind the name of a block");
+      while (!file.take('}')) {
+        if (file.next() == '$' || file.next() == '#') return {};
+        if (file.word("a key") == "default") return file.entry();
+        file.skip_entry();
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+bool is_steady_openfoam(const fs::path& path) {
+  const fs::path folder = case_of(path).root() / "system";
+  if (!has_foam_file(folder, "fvSchemes")) return false;
+  try {
+    FoamFile file(folder, "fvSchemes", 0);
+    return default_scheme(file, "ddtSchemes").starts_with("steadyState");
+  } catch (const InvalidMesh&) {
+    return false;  // it is not needed for anything else
+  }
 }
 
 std::vector<Vec3> openfoam_points_at(const fs::path& path, const ReadOptions& options) {
