@@ -63,6 +63,7 @@ struct Summary {
   std::uint64_t held = 0;  ///< at the end
   std::uint64_t lost = 0;
   std::vector<std::string> patch_names;
+  std::vector<double> patch_areas;  ///< of walls of free cells at the end, in the plane lengths
   double seconds_load = 0.0;
   double seconds_locate = 0.0;
   double seconds_solids = 0.0;          ///< steps of bodies, catheters and solids

@@ -141,11 +141,13 @@ struct SimulationTotals {
   Counters counters;
   CollisionCounts collisions;
   std::uint64_t wall_overlaps = 0;
-  double deepest_in_wall = 0.0;                  ///< the deepest of these
-  std::vector<std::uint64_t> contacts_by_patch;  ///< by the number of the patch met first
-  double seconds_detect = 0.0;                   ///< advancing particles, responses included
-  double seconds_deform = 0.0;                   ///< computing and setting the vertices' positions
-  double seconds_collide = 0.0;                  ///< pairs and impulses
+  double deepest_in_wall = 0.0;                   ///< the deepest of these
+  std::vector<std::uint64_t> contacts_by_patch;   ///< by the number of the patch met first
+  std::vector<std::uint64_t> deposited_by_patch;  ///< absorbed or stuck, by the patch of the last contact; not by edits
+  std::vector<std::uint64_t> escaped_by_patch;    ///< likewise
+  double seconds_detect = 0.0;                    ///< advancing particles, responses included
+  double seconds_deform = 0.0;                    ///< computing and setting the vertices' positions
+  double seconds_collide = 0.0;                   ///< pairs and impulses
   double seconds_respond = 0.0;  ///< injection, velocities and targets before the walk, statuses after it
 };
 
@@ -161,8 +163,7 @@ class SimulationCheckpoint {
   std::shared_ptr<const SimulationState> state_;
 };
 
-/// One checkpoint of those that the ranks of a simulation have saved after the same step. Throws InvalidArgument if
-/// there is none, or they are of different steps.
+/// One checkpoint of those that the ranks of a simulation have saved after the same step. Else throws InvalidArgument.
 SimulationCheckpoint joined(std::span<const SimulationCheckpoint> parts);
 
 /// The energy of all particles. Without collisions particles have no mass: each counts as 1 kg. With collisions a
@@ -226,7 +227,6 @@ struct SolidSummary {
 /// move and advance: from each other, from bodies and, at rest or among others, from walls within a quarter of their
 /// radius that reflect or let slide. These go on as in the last step, and are contacts when a sphere comes to them. Other
 /// walls respond as they do to points (docs/method.md). Results are the same bits for any number of threads.
-///
 /// In the plane every vector given to a simulation must have z = 0.
 ///
 /// Ranks (SimulationOptions::ranks) share the particles. Each makes the same simulation with the same calls, and has the

@@ -188,7 +188,8 @@ void fields(Archive& a, SimulationTotals& t) {
   fields(a, t.counters);
   fields(a, t.collisions);
   values(a, t.wall_overlaps, t.deepest_in_wall);
-  a.list(t.contacts_by_patch, [&](std::uint64_t& n) { a.value(n); });
+  for (auto* counts : {&t.contacts_by_patch, &t.deposited_by_patch, &t.escaped_by_patch})
+    a.list(*counts, [&](std::uint64_t& n) { a.value(n); });
   values(a, t.seconds_detect, t.seconds_deform, t.seconds_collide, t.seconds_respond);
 }
 

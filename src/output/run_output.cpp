@@ -21,6 +21,7 @@
 #include "output/report_recording.hpp"
 #include "output/solids_recording.hpp"
 #include "output/statistics_recording.hpp"
+#include "output/summary.hpp"
 #include "simulation/simulation_view.hpp"
 #include "simulation/timer.hpp"
 
@@ -273,6 +274,11 @@ void RunOutput::finish_files(const Simulation& simulation) {
     writing_->finish();
   }
   summary_.seconds_writing_thread = writing_->seconds();
+  if (summary_.totals.start + summary_.totals.injected > 0) {
+    const std::string table = deposition_csv(summary_);
+    const std::string_view whole = table;
+    replace_file(folder() / "deposition.csv", {&whole, 1});
+  }
   write_summary();
   if (wants_report()) write_report_of_run();
 }

@@ -17,6 +17,7 @@
 #include "mesh/mesh_scale.hpp"
 #include "output/run_files.hpp"
 #include "output/run_output.hpp"
+#include "output/wall_faces.hpp"
 #include "scene/scene_mesh.hpp"
 #include "simulation/particle_share.hpp"
 #include "simulation/simulation_view.hpp"
@@ -131,6 +132,18 @@ class Run {
   }
 
  private:
+  void add_areas() {
+    const auto* part = view_of(simulation_).part;
+    std::vector<ExactSum> areas =
+        wall_areas(simulation_.environment(), [&](Cell c) { return part == nullptr || part->cells().is_own(c); });
+    if (part != nullptr) areas.pop_back();  // behind the ghosts
+    for (const ExactSum& area : areas) {
+      ExactSum::Words words = area.words();
+      if (part != nullptr) sum_over(simulation_.options().ranks, words);
+      summary_.patch_areas.push_back(ExactSum::of(words).value());
+    }
+  }
+
   // If all ranks do.
   [[nodiscard]] bool goes_on(bool own) const {
     std::uint64_t stops = own ? 0 : 1;
@@ -161,6 +174,7 @@ class Run {
       summary_.surgery = simulation_.event_log();
       describe(simulation_.environment(), summary_);
     }
+    add_areas();
     const SimulationTotals& t = summary_.totals;
     summary_.lost = t.start + t.injected - t.absorbed - t.escaped - summary_.alive;
     if (summary_.audit) summary_.lost += simulation_.audit().failed;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <numeric>
+#include <string>
 #include <vector>
 
 #include "dartcast/run.hpp"
@@ -12,6 +13,20 @@ namespace dartcast {
 /// A summary may come from anywhere. Throws InvalidArgument if there are values for more patches than patch_names
 /// has, or for more planes than options.
 void check_summary(const Summary& summary);
+
+/// The particles that ended at a patch.
+struct Deposition {
+  std::string patch;  ///< its name; empty: none
+  std::uint64_t deposited = 0;
+  std::uint64_t escaped = 0;
+  double fraction = 0.0;  ///< of all particles of the run that were deposited here
+  double area = 0.0;      ///< 0: not known
+  double per_area = 0.0;
+};
+/// Those of all patches, and of walls without one where particles ended there.
+std::vector<Deposition> depositions(const Summary& summary);
+/// The same as a table.
+std::string deposition_csv(const Summary& summary);
 
 /// Whether the tests of all these steps were counted. Runs by cells count steps alone: the histogram then lacks them.
 inline bool counts_tests(const Counters& c) {

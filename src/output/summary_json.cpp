@@ -46,6 +46,15 @@ Json contacts(const Summary& s) {
           {"by_patch", by_patch(s, s.totals.contacts_by_patch)}};
 }
 
+Json deposition(const Summary& s) {
+  Json json = Json::object();
+  for (const Deposition& d : depositions(s)) {
+    json[d.patch] = {{"deposited", d.deposited}, {"escaped", d.escaped}, {"fraction", d.fraction}};
+    if (d.area > 0.0) json[d.patch]["per_area"] = d.per_area;
+  }
+  return json;
+}
+
 Json seconds(const Summary& s) {
   Json json = {{"load", s.seconds_load}, {"locate", s.seconds_locate}, {"detect", s.totals.seconds_detect}};
   if (s.deforms) json["deform"] = s.totals.seconds_deform;
@@ -231,6 +240,7 @@ std::string summary_json(const Summary& s) {
   if (!s.solids.empty()) json["tools"] = solids(s.solids);
   if (t.counters.particle_steps > 0) json["orientation_tests"] = orientation_tests(s);
   json["contacts"] = contacts(s);
+  if (t.start + t.injected > 0) json["deposition"] = deposition(s);
   if (s.statistics) json["statistics"] = statistics(s);
   json["seconds"] = seconds(s);
   if (t.counters.particle_steps > 0) json["ns_per_particle_step"] = ns_per_particle_step(s);

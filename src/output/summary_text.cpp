@@ -96,6 +96,13 @@ void add_contact_rows(SummaryTable& table, const Summary& s) {
       patches.push_back(fmt::format("{} {}", i == 0 ? "no patch" : s.patch_names[i], grouped(by_patch[i])));
   }
   if (patches.size() > 1) table.add("contacts", patches);
+  for (const Deposition& d : depositions(s)) {
+    if (d.deposited == 0) continue;
+    std::string row = fmt::format("{}: {} ({:.2f} %)", d.patch.empty() ? "no patch" : d.patch, grouped(d.deposited),
+                                  100.0 * d.fraction);
+    if (d.area > 0.0) row += fmt::format(", {:.4g} per unit of area", d.per_area);
+    table.add("deposition", row);
+  }
   const CollisionCounts& c = s.totals.collisions;
   if (c.pairs_tested > 0)
     table.add("collisions", fmt::format("{} touching pairs, {} overlaps, the deepest {:.3g} m",

@@ -73,6 +73,14 @@ WallFaceList wall_face_list(const CombinatorialMap& map) {
   return walls;
 }
 
+std::vector<ExactSum> wall_areas(const Environment& environment, const std::function<bool(Cell)>& is_own) {
+  std::vector<ExactSum> areas(environment.map().patch_names().size());
+  for (const CellFace face : wall_face_list(environment.map()).faces) {
+    if (is_own(face.cell)) areas[environment.map().patch(face).value].add(area_of(environment.complex(), face));
+  }
+  return areas;
+}
+
 VtpFile wall_faces_file(const Environment& environment, const WallHits& hits) {
   const CombinatorialMap& map = environment.map();
   const WallFaceList walls = wall_face_list(map);

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
+#include "base/exact_sum.hpp"
 #include "dartcast/combinatorial_map.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/statistics.hpp"
@@ -20,6 +22,10 @@ struct WallFaceList {
 };
 /// Cost: linear in the cells.
 WallFaceList wall_face_list(const CombinatorialMap& map);
+
+/// The areas of the walls of free cells by the number of the patch, in the plane lengths. They do not depend on the order
+/// of the cells, nor on ranks that have parts of them. `is_own`: whether a cell counts here. Cost: linear in the cells.
+std::vector<ExactSum> wall_areas(const Environment& environment, const std::function<bool(Cell)>& is_own);
 
 /// As write_wall_hits() describes it. Cost: linear in the cells.
 VtpFile wall_faces_file(const Environment& environment, const WallHits& hits);

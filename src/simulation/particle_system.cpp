@@ -110,7 +110,8 @@ ParticleSystem::ParticleSystem(Environment& environment, Followers& followers, M
   if (environment.map().dimension() == 2 && options.gravity.z != 0.0)
     throw InvalidArgument(fmt::format("simulation: gravity is ({}, {}, {}): in the plane its z must be 0",
                                       options.gravity.x, options.gravity.y, options.gravity.z));
-  totals_.contacts_by_patch.resize(environment.map().patch_names().size());
+  for (auto* counts : {&totals_.contacts_by_patch, &totals_.deposited_by_patch, &totals_.escaped_by_patch})
+    counts->resize(environment.map().patch_names().size());
 }
 
 // Phases, in order:
@@ -200,6 +201,10 @@ void ParticleSystem::count_contacts() {
     const WallHit& wall = list.walls_of(c).front();
     last_.contact_sources.push_back(environment_.map().source(wall.face.cell));
     ++totals_.contacts_by_patch[wall.patch.value];
+    const bool is_last = &c == &list.contacts.back() || (&c)[1].particle != c.particle;
+    const ParticleStatus end = set_.statuses()[c.particle];
+    if (!is_last || end == ParticleStatus::alive) continue;  // a stuck particle has no contacts after this
+    ++(end == ParticleStatus::escaped ? totals_.escaped_by_patch : totals_.deposited_by_patch)[wall.patch.value];
   }
 }
 

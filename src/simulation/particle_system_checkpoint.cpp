@@ -23,7 +23,9 @@ void ParticleSystem::save(SimulationState& state) const {
 
 void ParticleSystem::restore(const SimulationState& state) {
   const ParticleSystemState& saved = state.particles;
-  if (saved.totals.contacts_by_patch.size() != totals_.contacts_by_patch.size())
+  const std::size_t patches = totals_.contacts_by_patch.size();
+  if (saved.totals.contacts_by_patch.size() != patches || saved.totals.deposited_by_patch.size() != patches ||
+      saved.totals.escaped_by_patch.size() != patches)
     throw InvalidArgument(
         "simulation: the checkpoint is of an environment with other patches: use the mesh that it was saved with");
   if (saved.table[saved.table.user_data].size() != saved.table.rows() * options_.user_data.size())
@@ -34,7 +36,8 @@ void ParticleSystem::restore(const SimulationState& state) {
   totals_ = {};
   totals_.start = saved.totals.start;
   totals_.injected = saved.totals.injected;
-  totals_.contacts_by_patch.resize(saved.totals.contacts_by_patch.size());
+  for (auto* counts : {&totals_.contacts_by_patch, &totals_.deposited_by_patch, &totals_.escaped_by_patch})
+    counts->resize(patches);
   gone_ = {};
   if (!share().is_first()) return;  // sums over all ranks have them once
   totals_ = saved.totals;

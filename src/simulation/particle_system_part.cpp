@@ -16,7 +16,8 @@ namespace dartcast {
 
 void ParticleSystem::set_part(PartEnvironment& part) {
   part_ = &part;
-  totals_.contacts_by_patch.pop_back();  // behind the ghosts
+  for (auto* counts : {&totals_.contacts_by_patch, &totals_.deposited_by_patch, &totals_.escaped_by_patch})
+    counts->pop_back();  // behind the ghosts
 }
 
 std::vector<std::string> ParticleSystem::packed_for(const std::function<std::uint32_t(Cell)>& owner) const {

@@ -28,7 +28,11 @@ void add_sums(SimulationTotals& all, const SimulationTotals& t) {
   all.collisions += t.collisions;
   all.wall_overlaps += t.wall_overlaps;
   all.deepest_in_wall = std::max(all.deepest_in_wall, t.deepest_in_wall);
-  for (std::size_t i = 0; i < all.contacts_by_patch.size(); ++i) all.contacts_by_patch[i] += t.contacts_by_patch[i];
+  for (std::size_t i = 0; i < all.contacts_by_patch.size(); ++i) {
+    all.contacts_by_patch[i] += t.contacts_by_patch[i];
+    all.deposited_by_patch[i] += t.deposited_by_patch[i];
+    all.escaped_by_patch[i] += t.escaped_by_patch[i];
+  }
 }
 
 std::string packed(const SimulationTotals& t) {
@@ -40,6 +44,8 @@ std::string packed(const SimulationTotals& t) {
   out.put(t.wall_overlaps);
   out.put(t.deepest_in_wall);
   out.put(t.contacts_by_patch);
+  out.put(t.deposited_by_patch);
+  out.put(t.escaped_by_patch);
   return out.bytes();
 }
 
@@ -53,6 +59,8 @@ void unpack(const std::string& bytes, SimulationTotals& t) {
   t.wall_overlaps = in.take<std::uint64_t>();
   t.deepest_in_wall = in.take<double>();
   t.contacts_by_patch = in.take_list<std::uint64_t>();
+  t.deposited_by_patch = in.take_list<std::uint64_t>();
+  t.escaped_by_patch = in.take_list<std::uint64_t>();
 }
 
 }  // namespace

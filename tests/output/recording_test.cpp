@@ -86,10 +86,10 @@ TEST_F(RecordingTest, AStaticRunLeavesItsFilesAndNoOthers) {
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename());
   std::sort(names.begin(), names.end());
-  EXPECT_EQ(names, (std::vector<std::string>{"checkpoint.bin", "contacts.csv", "environment.pvd", "environment.vtu",
-                                             "particles.pvd", "particles_000000.vtp", "particles_000010.vtp",
-                                             "particles_000020.vtp", "particles_000025.vtp", "report.bin",
-                                             "report.html", "scene.toml", "stats.csv", "summary.json"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"checkpoint.bin", "contacts.csv", "deposition.csv", "environment.pvd",
+                                             "environment.vtu", "particles.pvd", "particles_000000.vtp",
+                                             "particles_000010.vtp", "particles_000020.vtp", "particles_000025.vtp",
+                                             "report.bin", "report.html", "scene.toml", "stats.csv", "summary.json"}));
   EXPECT_EQ(content(folder / "scene.toml"), scene_text);
   EXPECT_EQ(lines(folder / "stats.csv").size(), 26U);
   const auto& by_kind = summary.totals.counters.contacts;

@@ -65,6 +65,8 @@ class Resume : public testing::Test {
     EXPECT_EQ(resumed.audit->failed, 0U);
     EXPECT_EQ(resumed.totals.injected, whole.totals.injected);
     EXPECT_EQ(resumed.totals.contacts_by_patch, whole.totals.contacts_by_patch);
+    EXPECT_EQ(resumed.totals.deposited_by_patch, whole.totals.deposited_by_patch);
+    EXPECT_EQ(resumed.totals.escaped_by_patch, whole.totals.escaped_by_patch);
     EXPECT_EQ(resumed.totals.counters.histogram, whole.totals.counters.histogram);
     const auto expected = files(one);
     const auto found = files(two);

@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "dartcast/audit.hpp"
 #include "dartcast/error.hpp"
@@ -229,6 +230,38 @@ TEST(Simulation, ParticlesLeaveWhereTheyAreAbsorbedOrEscape) {
   EXPECT_EQ(t.absorbed, 1U);
   EXPECT_EQ(t.contacts_by_patch[environment.map().patch("xmax").value], 1U);
   EXPECT_EQ(t.contacts_by_patch[environment.map().patch("xmin").value], 1U);
+  EXPECT_EQ(t.escaped_by_patch[environment.map().patch("xmax").value], 1U);
+  EXPECT_EQ(t.deposited_by_patch[environment.map().patch("xmin").value], 1U);
+}
+
+// A particle counts at the wall where it ends: not where it rebounds before, and once where it sticks to a moving wall.
+TEST(Simulation, ParticlesAreCountedWhereTheyEnd) {
+  Environment environment(test::cube_of(3, 10.0));
+  SimulationOptions o = options(0.1);
+  o.patch_responses = {{"xmax", Escape{}}, {"ymin", Absorb{}}, {"zmin", Stick{}}};
+  Simulation flow(environment, o);
+  DeformationStep bump;
+  bump.kind = DeformationKind::bump;
+  bump.amplitude = 1.0;
+  bump.centre = {5.0, 5.0, 0.0};
+  bump.length = 4.0;
+  flow.set_deformation(Deformation({bump}, environment.positions()));
+  flow.add_random(300, {3.0, -2.0, -4.0});
+  std::uint64_t stuck = 0;
+  for (int i = 0; i < 60; ++i) flow.step();
+  for (const ParticleStatus s : flow.statuses()) stuck += s == ParticleStatus::stuck ? 1 : 0;
+  const SimulationTotals& t = flow.totals();
+  const auto patch = [&](const char* name) { return environment.map().patch(name).value; };
+  EXPECT_GT(stuck, 20U);
+  EXPECT_GT(t.absorbed, 20U);
+  EXPECT_EQ(t.deposited_by_patch[patch("zmin")], stuck);
+  EXPECT_EQ(t.deposited_by_patch[patch("ymin")], t.absorbed);
+  EXPECT_EQ(t.escaped_by_patch[patch("xmax")], t.escaped);
+  const auto sum = [](const std::vector<std::uint64_t>& n) {
+    return std::accumulate(n.begin(), n.end(), std::uint64_t{0});
+  };
+  EXPECT_EQ(sum(t.deposited_by_patch), stuck + t.absorbed);
+  EXPECT_EQ(sum(t.escaped_by_patch), t.escaped);
 }
 
 TEST(Simulation, AReflectionKeepsTheUnusedWay) {
