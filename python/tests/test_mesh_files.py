@@ -238,3 +238,31 @@ def test_points_of_the_plane_get_a_third_coordinate():
 def test_a_mesh_without_cells_is_refused():
     with pytest.raises(ValueError, match="expected cells such as tetra"):
         dartcast.from_meshio(meshio.Mesh(np.zeros((2, 3)), [("line", np.array([[0, 1]]))]))
+
+
+@pytest.mark.parametrize("compression", [None, "none", "small"])
+def test_meshio_reads_the_frames_of_a_run(tmp_path, compression):
+    output = {"every": 2} if compression is None else {"every": 2, "compression": compression}
+    dartcast.run({"environment": {"generator": "vessel", "core": 2, "rings": 1, "tissue_layers": 1, "step_length": 1.5e-3},
+                  "deformation": [{"kind": "pulse", "amplitude": 0.1, "period": 0.1, "field": "pulse_direction"}],
+                  "particles": [{"count": 5}], "motion": {"dt": 1e-3, "steps": 2}, "output": output}, tmp_path / "run")
+    mesh = meshio.read(tmp_path / "run" / "environment_000002.vtu")
+    own = dartcast.read_mesh(tmp_path / "run" / "environment_000002.vtu").mesh
+    assert np.array_equal(mesh.points, own.points)
+    assert sum(len(block.data) for block in mesh.cells) == own.cell_count
+    assert np.array_equal(mesh.point_data["velocity"], own.point_data["velocity"])
+    assert set(np.concatenate(mesh.cell_data["free"])) == {0, 1} and "region" in mesh.cell_data
+    names = [name for name in bytes(mesh.field_data["region_names"].tolist()).split(b"\0") if name]
+    assert sorted(names) == [b"1 lumen", b"2 tissue"] and own.region_names == {1: "lumen", 2: "tissue"}
+
+
+def test_meshio_reads_a_written_mesh(tmp_path):
+    mesh = mixed_box()
+    mesh.regions = np.arange(mesh.cell_count) % 2 + 1
+    mesh.region_names = {1: "ä <wall>", 2: "b"}
+    dartcast.write_mesh(mesh, tmp_path / "a.vtu")
+    read = meshio.read(tmp_path / "a.vtu")
+    assert np.array_equal(read.points, mesh.points)
+    assert sum(len(block.data) for block in read.cells) == mesh.cell_count + len(mesh.patch_tags)
+    back = dartcast.read_mesh(tmp_path / "a.vtu").mesh
+    assert back.region_names == mesh.region_names and back.patch_names == mesh.patch_names

@@ -134,13 +134,15 @@ std::vector<XmlArray> cell_data_of(const Mesh& mesh, std::size_t items) {
   return arrays;
 }
 
+// As bytes, each text ended by a 0: meshio cannot read a file with VTK's arrays of texts.
 void add_texts(const char* array_name, const std::vector<std::string>& texts, std::vector<XmlArray>& to) {
   if (texts.empty()) return;
-  std::vector<char> characters;  // each text ended by a 0
+  std::vector<std::uint8_t> characters;
   for (const std::string& text : texts)
     characters.insert(characters.end(), text.c_str(), text.c_str() + std::strlen(text.c_str()) + 1);
+  const std::size_t bytes = characters.size();
   to.emplace_back(array_name, std::move(characters));
-  to.back().set_tuples(texts.size());
+  to.back().set_tuples(bytes);
 }
 
 void add_names(const char* array_name, const std::map<std::int32_t, std::string>& names, std::vector<XmlArray>& to) {

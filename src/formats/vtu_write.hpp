@@ -1,9 +1,11 @@
 // A mesh as a .vtu file, and as its arrays.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "dartcast/mesh_data.hpp"
 #include "formats/xml_write.hpp"
@@ -16,6 +18,10 @@ inline constexpr const char* free_writer = "free_written_by";
 
 /// The field array of MeshData::baffle_tags, as texts.
 inline constexpr const char* baffle_patches = "baffle_patches";
+
+/// The field arrays that write_vtu() writes as bytes, texts that are each ended by a 0.
+inline constexpr std::array<std::string_view, 4> arrays_of_texts = {free_writer, baffle_patches, "region_names",
+                                                                    "patch_names"};
 
 /// Cells, patch faces and data as write_vtu() writes them. Arrays that stand in the mesh as in the file are not copied:
 /// the mesh stays as it is while the data set is used.

@@ -84,14 +84,14 @@ void add_cells(const MeshData& mesh, std::string_view types, LegacyText& to) {
   to.numbers(std::vector<std::int32_t>(types.begin(), types.end()));
 }
 
-/// Field data: texts, each behind its length.
+/// Field data: texts, each behind its length. In the .vtu file each is ended by a 0.
 void add_field(const std::vector<XmlArray>& arrays, LegacyText& to) {
   if (arrays.empty()) return;
   to.line("FIELD FieldData {}", arrays.size());
   for (const XmlArray& a : arrays) {
-    to.line("{} 1 {} string", encoded(a.name()), a.tuples());
     std::string_view left = a.bytes();
-    for (std::size_t i = 0; i < a.tuples(); ++i) {
+    to.line("{} 1 {} string", encoded(a.name()), std::count(left.begin(), left.end(), '\0'));
+    while (!left.empty()) {
       const std::string_view text = left.substr(0, left.find('\0'));
       to.text(text);
       left.remove_prefix(text.size() + 1);

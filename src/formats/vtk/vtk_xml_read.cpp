@@ -12,6 +12,7 @@
 #include "formats/vtk/vtk_grid.hpp"
 #include "formats/vtk/vtk_xml.hpp"
 #include "formats/vtk/vtu_array.hpp"
+#include "formats/vtu_write.hpp"
 
 namespace dartcast {
 namespace {
@@ -42,7 +43,7 @@ void check_ascends(const VtuArray& array, const std::vector<std::int64_t>& ends)
 }
 
 /// Texts, each ended by a 0.
-std::vector<std::string> texts_of(const VtuArray& array, const VtuEncoding& encoding, std::uint64_t items) {
+std::vector<std::string> texts_of(const VtuArray& array, const VtuEncoding& encoding) {
   const std::vector<std::int64_t> characters = decode_integers(array, encoding);
   if (!characters.empty() && characters.back() != 0) fail_array(array, "its last text does not end");
   std::vector<std::string> texts;
@@ -54,15 +55,15 @@ std::vector<std::string> texts_of(const VtuArray& array, const VtuEncoding& enco
       text += static_cast<char>(c);
     }
   }
-  if (array.components != 1 || texts.size() != items)
-    fail_array(array, fmt::format("it has {} texts, where {} should stand", texts.size(), items));
   return texts;
 }
 
 VtkArray array_of(const VtuArray& array, const VtuEncoding& encoding, std::uint64_t items) {
   VtkArray out{array.name, static_cast<std::size_t>(array.components), array.type == "String", {}, {}};
   if (out.is_text) {
-    out.texts = texts_of(array, encoding, items);
+    out.texts = texts_of(array, encoding);
+    if (array.components != 1 || out.texts.size() != items)
+      fail_array(array, fmt::format("it has {} texts, where {} should stand", out.texts.size(), items));
   } else {
     out.values = decode_numbers(array, encoding);
     check_size(array, out.values.size(), items);
@@ -248,6 +249,11 @@ class GridReader {
 
   /// Only texts are used.
   void add_field(const VtuArray& array) {
+    const bool is_own = std::find(arrays_of_texts.begin(), arrays_of_texts.end(), array.name) != arrays_of_texts.end();
+    if (is_own && array.type == "UInt8" && array.components == 1) {
+      grid_.field.push_back({array.name, 1, true, {}, texts_of(array, encoding_)});
+      return;
+    }
     if (array.type != "String" && array.tuples == 0) return;
     VtkArray read = array_of(array, encoding_, array.tuples);
     if (read.is_text) grid_.field.push_back(std::move(read));
