@@ -85,6 +85,10 @@ void add_mesh(CLI::App& app, int& status) {
       ->capture_default_str();
   verb->add_option("--outside", a->scene.outside, "the region up to the box")->type_name("NAME")->capture_default_str();
   verb->add_flag("--cap", a->scene.cap, "close flat holes: patches inlet, outlet ...");
+  verb->add_option("--cap-tolerance", a->scene.cap_tolerance,
+                   "how far a hole may be off a plane, as a share of its width")
+      ->capture_default_str();
+  verb->add_flag("--repair", a->scene.repair, "replace a few triangles that cross or touch, and those around them");
   verb->add_option("--angle", a->scene.angle, "degrees: sharper edges divide a surface without groups into patches")
       ->type_name("N")
       ->capture_default_str();

@@ -53,6 +53,8 @@ struct SurfaceScene {
   double box = 1.2;                 ///< > 1: edges of the box, as a multiple of those of the box around all surfaces
   double size = 0.0;                ///< of the tetrahedra's edges, about, as far as the surface allows; 0: any
   bool cap = false;                 ///< close holes whose edges lie near a plane, as cut ends of vessels do
+  double cap_tolerance = 0.05;      ///< the share of its diameter by which the edge of such a hole may be off the plane
+  bool repair = false;              ///< replace a few triangles that cross or touch, and those around them
   double angle = 60.0;              ///< degrees: sharper edges divide a surface without groups into patches
   Mesher mesher = Mesher::any;
   double seconds = 600.0;  ///< that the program may take

@@ -16,6 +16,7 @@
 #include "formats/parsed_surface.hpp"
 #include "formats/read_memory.hpp"
 #include "meshing/holes.hpp"
+#include "meshing/mend_crossings.hpp"
 #include "surface/check_surface.hpp"
 #include "surface/ears.hpp"
 
@@ -53,7 +54,8 @@ MeshFile read_one(const std::filesystem::path& file, const SurfaceScene& scene, 
     out.report.warnings.insert(out.report.warnings.end(), parsed.warnings.begin(), parsed.warnings.end());
     std::erase_if(out.report.warnings, [](const Finding& w) { return w.kind == "open_border"; });
     if (!out.report.valid()) return;
-    if (scene.cap) close_holes(out.mesh, out.report);
+    if (scene.cap) close_holes(out.mesh, out.report, scene.cap_tolerance);
+    if (scene.repair && out.report.valid() && holes_of(out.mesh).empty()) mend_crossings(out.mesh, out.report);
     if (out.report.valid()) add_finding(out.report.defects, open_holes(out.mesh));
   });
 }
@@ -181,9 +183,10 @@ class Collector {
     Vec3 centre;
     for (const std::uint32_t p : out_.triangles[a]) centre += out_.points[p] * (1.0 / 3.0);
     finding.message = fmt::format(
-        "pairs of triangles that cross or touch{}, the first one of {} and {}, around ({:.4g}, {:.4g}, {:.4g}); mend "
+        "pairs of triangles that cross or touch{}, the first one of {} and {}, around ({:.4g}, {:.4g}, {:.4g}); {}mend "
         "the surface in a program such as MeshLab",
-        pairs.size() == most_pairs ? ", or more" : "", named(a), named(b), centre.x, centre.y, centre.z);
+        pairs.size() == most_pairs ? ", or more" : "", named(a), named(b), centre.x, centre.y, centre.z,
+        scene_.repair ? "--repair (repair = true) does not help: " : "try --repair (repair = true), or ");
     return finding;
   }
 

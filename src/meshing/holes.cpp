@@ -45,7 +45,9 @@ std::string place(const Hole& hole) {
   return fmt::format("around ({:.4g}, {:.4g}, {:.4g})", hole.centre.x, hole.centre.y, hole.centre.z);
 }
 
-bool is_flat(const Hole& hole) { return hole.area > 0.0 && hole.off_plane <= cap_flatness * diameter(hole); }
+bool is_flat(const Hole& hole, double tolerance) {
+  return hole.area > 0.0 && hole.off_plane <= tolerance * diameter(hole);
+}
 
 }  // namespace
 
@@ -69,18 +71,19 @@ std::vector<Hole> holes_of(const MeshData& surface) {
   return holes;
 }
 
-void close_holes(MeshData& surface, MeshReport& report) {
+void close_holes(MeshData& surface, MeshReport& report, double tolerance) {
   std::vector<Hole> holes = holes_of(surface);
   for (const Hole& hole : holes) {
-    if (is_flat(hole)) continue;
+    if (is_flat(hole, tolerance)) continue;
+    const double share = hole.area > 0.0 ? hole.off_plane / diameter(hole) : 1.0;
     report.defects.push_back(
         {"cap",
          1,
          {hole.corners.begin(), hole.corners.end()},
          fmt::format(
-             "hole that is not near a plane, {}: its border is {:.3g} off, and {:.3g} wide; cut the ends flat, or "
-             "close it in a program such as MeshLab",
-             place(hole), hole.off_plane, diameter(hole))});
+             "hole that is not near a plane, {}: its border is {:.3g} off, and {:.3g} wide; give cap a tolerance above "
+             "{:.2g} (cap = {{ tolerance = {:.2g} }}), cut the ends flat, or close it in a program such as MeshLab",
+             place(hole), hole.off_plane, diameter(hole), share, 1.1 * share)});
     return;
   }
   std::stable_sort(holes.begin(), holes.end(), [](const Hole& a, const Hole& b) { return a.area > b.area; });

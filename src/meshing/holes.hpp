@@ -22,13 +22,11 @@ struct Hole {
 /// All holes of an oriented surface of triangles, in the order of their lowest corners.
 std::vector<Hole> holes_of(const MeshData& surface);
 
-/// The largest part of its diameter by which a hole's border may be off a plane, for a cap. It is a matter of taste, not
-/// of exactness: a cap's triangles end exactly at the border, however that lies.
-inline constexpr double cap_flatness = 0.05;
-
 /// Closes all holes with triangles, in regions of their own: inlet for the largest one, outlet or outlet_1 ... for the
-/// others. Faces that had no region are in region 0. Holes that are not near a plane are defects, and nothing changes.
-void close_holes(MeshData& surface, MeshReport& report);
+/// others. Faces that had no region are in region 0. A hole whose border is off a plane by more than `tolerance` of its
+/// diameter is a defect, and nothing changes. The tolerance is a matter of taste, not of exactness: a cap's triangles end
+/// exactly at the border, however that lies.
+void close_holes(MeshData& surface, MeshReport& report, double tolerance);
 
 /// Holes as a defect, with the first ones' places.
 Finding open_holes(const MeshData& surface);

@@ -22,6 +22,7 @@ void check_range(const SurfaceScene& scene) {
   require(!scene.surfaces.empty(), "name at least one");
   require(std::isfinite(scene.box) && scene.box > 1.0, "box must be more than 1");
   require(std::isfinite(scene.size) && scene.size >= 0.0, "size must be 0 or more");
+  require(std::isfinite(scene.cap_tolerance) && scene.cap_tolerance >= 0.0, "cap_tolerance must be 0 or more");
   require(scene.angle > 0.0 && scene.angle <= 180.0, "angle must be more than 0 and at most 180 degrees");
   require(scene.seconds > 0.0, "seconds must be more than 0");
   for (const NamedSurface& s : scene.surfaces) {

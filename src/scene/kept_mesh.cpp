@@ -22,8 +22,8 @@ namespace {
 
 /// The first lines of the file. Gmsh skips them as comments.
 std::string mark_of(const SurfaceScene& scene) {
-  std::string values = fmt::format("{} {:a} {:a} {} {:a} {}", scene.outside, scene.box, scene.size, scene.cap,
-                                   scene.angle, static_cast<int>(scene.mesher));
+  std::string values = fmt::format("{} {:a} {:a} {} {:a} {:a} {} {}", scene.outside, scene.box, scene.size, scene.cap,
+                                   scene.cap_tolerance, scene.angle, scene.repair, static_cast<int>(scene.mesher));
   for (const NamedSurface& s : scene.surfaces) values += fmt::format(" {} {}", s.region, file_digest(s.file));
   return fmt::format("$Comments\ndartcast surface mesh {:016x}\n$EndComments\n", digest(values));
 }

@@ -152,7 +152,15 @@ SurfaceScene read_surfaces(TomlTable t, const std::filesystem::path& folder) {
   }
   t.get("box", scene.box, {1.0, Range::unlimited, true});
   t.get("size", scene.size, Range::not_negative);
-  t.get("cap", scene.cap);
+  if (t.is_table("cap")) {
+    TomlTable cap = t.table("cap");
+    scene.cap = true;
+    cap.get("tolerance", scene.cap_tolerance, Range::not_negative);
+    cap.finish();
+  } else {
+    t.get("cap", scene.cap);
+  }
+  t.get("repair", scene.repair);
   t.get("angle", scene.angle, {0.0, 180.0, true});
   t.get("with", scene.mesher, {{"tetgen", Mesher::tetgen}, {"gmsh", Mesher::gmsh}});
   t.get("seconds", scene.seconds, Range::positive);

@@ -226,7 +226,7 @@ steps = 10
 wall_motion = "simultaneous"
 )",
                                                R"([environment]
-mesh = { surface = { lumen = "my.stl" }, outside = "tissue", box = 1.5, size = 0.5, cap = true, angle = 30, with = "tetgen", seconds = 60 }
+mesh = { surface = { lumen = "my.stl" }, outside = "tissue", box = 1.5, size = 0.5, cap = { tolerance = 0.1 }, repair = true, angle = 30, with = "tetgen", seconds = 60 }
 [[particles]]
 count = 50
 velocity = [1.0, 2.0, 3.0]

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
@@ -273,7 +274,11 @@ TEST_F(MeshSurfaces, EndsThatAreNotFlatAreRefused) {
   EXPECT_TRUE(mesh_surfaces(scene).report.valid());
   scene = scene_of({{"vessel", tube(12, 1.0, 1.0, 0.5)}});
   scene.cap = true;
-  expect_defect(mesh_surfaces(scene), "cap", {"not near a plane", "(", "5."});
+  expect_defect(mesh_surfaces(scene), "cap", {"not near a plane", "(", "5.", "tolerance"});
+  scene.cap_tolerance = 1.0;
+  const MeshFile file = mesh_surfaces(scene);
+  ASSERT_TRUE(file.report.valid()) << report_text(file.report);
+  EXPECT_EQ(patches_of(file.mesh).count("inlet"), 1U);
 }
 
 // Surfaces that are not right.
