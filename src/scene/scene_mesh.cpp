@@ -1,6 +1,8 @@
 // Reads the files that a scene names; then looks up in the mesh what the scene names there.
 #include "scene/scene_mesh.hpp"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "dartcast/error.hpp"
@@ -42,7 +44,10 @@ void scale_points(MeshFile& file, double scale) {
 std::string mesh_name(const MeshSource& mesh) {
   if (const auto* path = std::get_if<std::filesystem::path>(&mesh)) return path->string();
   if (const auto* surfaces = std::get_if<SurfaceScene>(&mesh)) return surfaces->surfaces.front().file.string();
-  return "the generated mesh";
+  const auto* box = std::get_if<BoxOptions>(&mesh);
+  if (box == nullptr || box->jitter <= surely_valid_jitter) return "the generated mesh";
+  return fmt::format("the generated mesh, whose jitter of {:.4g} may turn cells over (up to {:.2f} none does)",
+                     box->jitter, surely_valid_jitter);
 }
 
 SceneMesh read_scene_mesh(const EnvironmentScene& scene, const ReadOptions& options, Threads threads) {
