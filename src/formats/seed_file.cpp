@@ -20,6 +20,21 @@ namespace {
 constexpr std::array<std::string_view, 7> csv_columns = {"x", "y", "z", "vx", "vy", "vz", "radius"};
 // A run computes these itself.
 constexpr std::array<std::string_view, 5> passed_over = {"id", "cell", "kind", "contacts", "held"};
+// ParaView computes these.
+constexpr std::array<std::string_view, 4> of_paraview = {"Points:Magnitude", "Points_Magnitude", "velocity:Magnitude",
+                                                         "velocity_Magnitude"};
+
+// ParaView's names of the columns in tables that it saves.
+void rename_columns_of_paraview(CsvTable& table) {
+  static constexpr std::array<std::string_view, 3> points = {"x", "y", "z"};
+  static constexpr std::array<std::string_view, 3> velocity = {"vx", "vy", "vz"};
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (const char between : {':', '_'}) {
+      table.rename(fmt::format("Points{}{}", between, k), points[k]);
+      table.rename(fmt::format("velocity{}{}", between, k), velocity[k]);
+    }
+  }
+}
 
 template <std::size_t n>
 bool is_one_of(const std::array<std::string_view, n>& names, std::string_view name) {
@@ -28,10 +43,11 @@ bool is_one_of(const std::array<std::string_view, n>& names, std::string_view na
 
 ParticleSeeds read_csv_seeds(const std::filesystem::path& path, const ReadOptions& options) {
   CsvTable table(path, options.max_memory);
+  rename_columns_of_paraview(table);
   std::vector<std::size_t> columns;
   for (const char* name : {"x", "y", "z"}) columns.push_back(table.column(name, "x, y and z"));
   for (const std::string& name : table.names()) {
-    if (!is_one_of(csv_columns, name) && !is_one_of(passed_over, name))
+    if (!is_one_of(csv_columns, name) && !is_one_of(passed_over, name) && !is_one_of(of_paraview, name))
       table.fail(fmt::format("the column '{}' is unknown; there are x, y, z, vx, vy, vz and radius", name));
   }
   const bool moving = table.has("vx") || table.has("vy") || table.has("vz");

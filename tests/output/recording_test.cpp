@@ -273,8 +273,8 @@ TEST_F(RecordingTest, PositionsComeFromVtpAndCsv) {
     }
   };
   expect_error("a,b\n1,2\n", ":1: there is no column 'x'");
-  expect_error("x,y,z\n1,2\n", ":2: '' is not a number");
-  expect_error("x,y,z\n0,0,0\n1,2,3a\n", ":3: '3a' is not a number");
+  expect_error("x,y,z\n1,2\n", ":2: column 'z': '' is not a number");
+  expect_error("x,y,z\n0,0,0\n1,2,3a\n", ":3: column 'z': '3a' is not a number");
   expect_error("x,y,z\n0.5,0.5,0.5\n1,2,3\n", "position 1 (counted from 0) is outside the mesh");
   expect_error("x,y,z\nnan,0.5,0.5\n", "finite");
   EXPECT_THROW(read_points("no.csv"), Error);

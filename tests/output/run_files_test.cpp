@@ -112,6 +112,25 @@ TEST_F(RunFilesTest, SeedsInACsvFileHaveVelocitiesAndRadii) {
   EXPECT_EQ(array(read_points(folder / "particles_000001.vtp"), "radius").values, (std::vector<double>{0.1}));
 }
 
+// Tables of spreadsheets, of ParaView, of Fortran.
+TEST_F(RunFilesTest, SeedsInTablesOfOtherPrograms) {
+  const std::vector<Vec3> expected = {{1.125, 2, 3}, {2, 1.875, 2.0625}};
+  for (const std::string& text :
+       {std::string("\xef\xbb\xbfx,y,z,vx,vy,vz\r\n1,2,3,1,0,0\r\n2,2,2,0,-1,0.5\r\n\r\n"),
+        std::string("\"Points:0\",\"Points:1\",\"Points:2\",\"velocity:0\",\"velocity:1\",\"velocity:2\",\"velocity:"
+                    "Magnitude\","
+                    "\"id\"\n1,2,3,1,0,0,1,0\n2,2,2,0,-1,0.5,1.1,1\n"),
+        std::string("Points_0,Points_1,Points_2,velocity_0,velocity_1,velocity_2\n1,2,3,1,0,0\n2,2,2,0,-1,0.5\n"),
+        std::string("x;y;z;vx;vy;vz\n1;2;3;1;0;0\n2;2;2;0;-1;0.5\n"),
+        std::string("x\ty\tz\tvx\tvy\tvz\n1\t2\t3\t1\t0\t0\n2\t2\t2\t0\t-1\t0.5\n"),
+        std::string("x,y,z,vx,vy,vz\n+1.0D+00, 2d0,3E0,1.,0,0\n2,2,2,0,-1.0d+00,5.0D-01\n")}) {
+    SCOPED_TRACE(text);
+    (void)temporary.file("a.csv", text);
+    (void)run(seeded("a.csv"));
+    EXPECT_EQ(read_points(folder / "particles_000001.vtp").points, expected);
+  }
+}
+
 TEST_F(RunFilesTest, SeedsInAVtpFileHaveVelocitiesAndRadii) {
   const std::string radius = "<DataArray type='Float64' Name='radius' format='ascii'>0 0.25</DataArray>";
   const std::string velocity =
@@ -147,9 +166,12 @@ TEST_F(RunFilesTest, ColumnsOfSeedsThatHaveNoMeaningAreRefused) {
   expect_error("x,y,z,vx,vy\n1,1,1,1,1\n", ":1: there is no column 'vz'");
   expect_error("x,y,z,x\n1,1,1,1\n", ":1: there are two columns 'x'");
   expect_error("x,y,z,radius\n1,1,1,-0.5\n", "the radius of position 0 (counted from 0) is -0.5");
-  expect_error("x,y,z,radius\n1,1,1,0\n1,1,1,inf\n", ":3: 'inf' is not finite");
-  expect_error("x,y,z,vx,vy,vz\n1,1,1,0,0,nan\n", ":2: 'nan' is not finite");
-  expect_error("x,y,z,vx,vy,vz\n1,1,1,0,0\n", ":2: '' is not a number");
+  expect_error("x,y,z,radius\n1,1,1,0\n1,1,1,inf\n", ":3: column 'radius': 'inf' is not finite");
+  expect_error("x,y,z,vx,vy,vz\n1,1,1,0,0,nan\n", ":2: column 'vz': 'nan' is not finite");
+  expect_error("x,y,z,vx,vy,vz\n1,1,1,0,0\n", ":2: column 'vz': '' is not a number");
+  expect_error("x;y;z\n0,5;1;1\n", ":2: column 'x': '0,5' is not a number");
+  expect_error("x,y,z\n1,1.0D+,1\n", ":2: column 'y': '1.0D+' is not a number");
+  expect_error("x,Points:0,y,z\n1,1,1,1\n", "the columns 'Points:0' and 'x' say the same");
 }
 
 // Free fall: each row's energies are those of the frame's particles.
