@@ -30,7 +30,21 @@ int check(const std::string& mesh, bool skip_bad_cells, bool json, const ReadOpt
   return report.valid() ? done : failed;
 }
 
+// A surface has no cells for particles: the answer says what makes some.
+int info_of_surface(const std::string& path, bool json, const ReadOptions& options) {
+  const MeshReport report = check_mesh(path, {}, options).report;
+  fmt::print("{}{}", json ? report_json(report) : report_text(report), json ? "\n" : "");
+  if (!json)
+    fmt::print(
+        "a surface; to move particles inside it: dartcast mesh {0} -o NAME.vtu, or in a scene mesh = {{ surface = "
+        "\"{0}\" "
+        "}}; as a body or solid: surface = \"{0}\"\n",
+        path);
+  return done;
+}
+
 int info(const std::string& path, bool json, const ReadOptions& options) {
+  if (is_surface_file(path)) return info_of_surface(path, json, options);
   EnvironmentScene scene;
   scene.mesh = std::filesystem::path(path);
   if (std::filesystem::path(path).extension() == ".toml") scene = read_scene(path).environment;
@@ -48,7 +62,12 @@ int info(const std::string& path, bool json, const ReadOptions& options) {
 }
 
 int convert(const std::string& in, const std::string& out, const ReadOptions& options) {
-  write_noting_loss(while_waiting("loading " + in, true, [&] { return read_valid_mesh(in, options).mesh; }), out);
+  if (std::filesystem::is_regular_file(std::filesystem::path(in) / "particles.pvd")) {
+    fmt::print("{} frames in {}\n", export_run(in, out), out);
+    return done;
+  }
+  const auto read = [&] { return is_surface_file(in) ? read_surface(in, options) : read_valid_mesh(in, options); };
+  write_noting_loss(while_waiting("loading " + in, true, read).mesh, out);
   return done;
 }
 
@@ -61,7 +80,7 @@ void add_read_options(CLI::App& verb, ReadOptions& options) {
 
 void write_noting_loss(const MeshData& mesh, const std::string& file) {
   write_mesh(mesh, file);
-  if (!mesh.free.empty() && !mesh_format_of(file)->arrays)
+  if (!mesh.free.empty() && (is_surface_file(file) || !mesh_format_of(file)->arrays))
     fmt::print(stderr,
                "dartcast: {}: this format has no place for which cells are free: give scenes the key free, or write "
                ".vtu\n",
@@ -89,7 +108,7 @@ void add_info(CLI::App& app, int& status) {
   const auto path = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
   CLI::App* verb = app.add_subcommand("info", "Print counts, bounds, shapes and memory.");
-  verb->add_option("MESH_OR_SCENE", *path, "a mesh file, or a scene (.toml)")->required()->type_name("FILE");
+  verb->add_option("MESH_OR_SCENE", *path, "a mesh or surface file, or a scene (.toml)")->required()->type_name("FILE");
   verb->add_flag("--json", *json, "print one JSON object, and nothing else");
   const auto options = std::make_shared<ReadOptions>();
   add_read_options(*verb, *options);
@@ -99,9 +118,14 @@ void add_info(CLI::App& app, int& status) {
 void add_convert(CLI::App& app, int& status) {
   const auto in = std::make_shared<std::string>();
   const auto out = std::make_shared<std::string>();
-  CLI::App* verb = app.add_subcommand("convert", "Write a mesh in another format, given by the ending.");
-  verb->add_option("IN", *in, "the mesh to read")->required()->type_name("FILE");
-  verb->add_option("OUT", *out, fmt::format("the file to write: {}", fmt::join(writable_mesh_endings(), " ")))
+  CLI::App* verb = app.add_subcommand("convert", "Write a mesh or a run in another format, given by the ending.");
+  verb->add_option("IN", *in, "the mesh or surface to read, in any format that check takes; or the folder of a run")
+      ->required()
+      ->type_name("FILE");
+  verb->add_option("OUT,-o,--output", *out,
+                   fmt::format("the file to write: {}; a surface also as {}; a run as {}",
+                               fmt::join(writable_mesh_endings(), " "), fmt::join(surface_endings(), " "),
+                               fmt::join(export_endings(), " ")))
       ->type_name("FILE")
       ->required();
   const auto options = std::make_shared<ReadOptions>();

@@ -100,7 +100,7 @@ MeshFile mesh_surfaces(const SurfaceScene& scene, const ReadOptions& options = {
 // Writing meshes.
 
 /// Writes a mesh in the format of the path's ending: .vtu, .vtk (legacy), .msh or .msh2 (Gmsh 2.2 ASCII), .msh4 (Gmsh
-/// 4.1 ASCII), .mesh (Medit). read_mesh() reads the same cells, points bit by bit, regions and patches back. Data
+/// 4.1 ASCII), .mesh (Medit); surfaces and meshes of the plane also as .stl, .obj, .ply, .off and .vtp. read_mesh() reads the same cells, points bit by bit, regions and patches back. Data
 /// without a place in the format are left out: arrays and `free` outside VTK's formats; names of regions and patches
 /// in .mesh. The bytes go to a file beside the path, with ".part" in its name. When it is whole it takes the path's
 /// place; on failure the file at the path is unchanged. Precondition: check_and_repair() found the mesh valid. Throws

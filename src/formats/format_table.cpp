@@ -10,6 +10,7 @@
 #include "formats/mesh_pieces.hpp"
 #include "formats/read_memory.hpp"
 #include "formats/surface_formats.hpp"
+#include "formats/surface_write.hpp"
 #include "formats/tetgen_files.hpp"
 #include "formats/vtk.hpp"
 #include "formats/vtp_surface.hpp"
@@ -62,11 +63,12 @@ std::span<const MeshFormat> mesh_formats() {
 }
 
 std::span<const SurfaceFormat> surface_formats() {
-  static const std::vector<SurfaceFormat> formats = {{"Stereolithography", ".stl", read_surface_text<parse_stl>},
-                                                     {"Wavefront", ".obj", read_surface_text<parse_obj>},
-                                                     {"Stanford", ".ply", read_surface_text<parse_ply>},
-                                                     {"Geomview", ".off", read_surface_text<parse_off>},
-                                                     {"VTK", ".vtp", parse_vtp_surface}};
+  static const std::vector<SurfaceFormat> formats = {
+      {"Stereolithography", ".stl", read_surface_text<parse_stl>, write_text<format_stl>},
+      {"Wavefront", ".obj", read_surface_text<parse_obj>, write_text<format_obj>},
+      {"Stanford", ".ply", read_surface_text<parse_ply>, write_text<format_ply>},
+      {"Geomview", ".off", read_surface_text<parse_off>, write_text<format_off>},
+      {"VTK", ".vtp", parse_vtp_surface, write_vtp_surface}};
   return formats;
 }
 

@@ -37,6 +37,7 @@ struct SurfaceFormat {
   std::string_view name;
   std::string_view ending;
   ParsedSurface (*read)(std::string_view content, std::uint64_t max_memory);
+  void (*write)(const MeshData& surface, const std::filesystem::path& file);
 };
 
 std::span<const MeshFormat> mesh_formats();

@@ -76,6 +76,12 @@ void check_cells(const MeshData& mesh, const MeshFormat& format) {
 }  // namespace
 
 void write_mesh(const MeshData& mesh, const std::filesystem::path& path) {
+  if (const SurfaceFormat* surface = surface_format_of(path); surface != nullptr) {
+    if (mesh.dimension() != 2)
+      throw InvalidArgument(fmt::format("{}: this is a format of surfaces, and the mesh has cells of space; use {}",
+                                        path.string(), in_words(writable_mesh_endings(), "or")));
+    return write_beside(path, [&](const fs::path& file) { surface->write(mesh, file); });
+  }
   const FormatEnding* ending = mesh_ending_of(path);
   if (ending == nullptr || ending->write == nullptr) {
     throw InvalidArgument(fmt::format("{}: cannot write files that end in '{}'; use {}", path.string(), ending_of(path),

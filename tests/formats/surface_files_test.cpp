@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "dartcast/error.hpp"
+#include "dartcast/generators.hpp"
 #include "dartcast/mesh_files.hpp"
 #include "dartcast/surface.hpp"
 #include "output/mesh_report_text.hpp"
@@ -41,6 +42,43 @@ TEST(SurfaceFiles, TheSameCubeFromEveryFormat) {
       EXPECT_EQ(file.mesh.points[i], (Vec3{cube_points[i][0], cube_points[i][1], cube_points[i][2]}));
     EXPECT_EQ(Surface(file.mesh).triangles().size(), 12U);
   }
+}
+
+TEST(SurfaceFiles, WrittenSurfacesAreReadBack) {
+  const Folder folder;
+  MeshData cube = read_surface(folder.file("cube.off",
+                                           [] {
+                                             for (const SurfaceSample& s : cube_files()) {
+                                               if (s.name.ends_with(".off") && s.triangles) return s.content;
+                                             }
+                                             return std::string();
+                                           }()))
+                      .mesh;
+  for (std::size_t i = 0; i < cube.points.size(); ++i)
+    cube.points[i] = cube.points[i] * (1.0 / 3.0) + Vec3{0.1, 1e-9, 7e5};
+  cube.regions.assign(cube.cell_count(), 1);
+  cube.regions[0] = cube.regions[1] = 2;
+  cube.region_names = {{1, "wall"}, {2, "end"}};
+  for (const std::string& ending : surface_endings()) {
+    SCOPED_TRACE(ending);
+    const auto path = folder / ("out" + ending);
+    write_mesh(cube, path);
+    const MeshFile back = read_surface(path);
+    EXPECT_EQ(back.report.verdict(), Verdict::accept) << report_text(back.report);
+    ASSERT_EQ(back.mesh.cell_count(), cube.cell_count());
+    const auto places = [](const MeshData& mesh) {
+      std::multiset<std::array<double, 3>> all;
+      for (const std::uint32_t p : mesh.connectivity)
+        all.insert({mesh.points[p].x, mesh.points[p].y, mesh.points[p].z});
+      return all;
+    };
+    EXPECT_EQ(places(back.mesh), places(cube));
+    if (ending == ".ply" || ending == ".off") continue;
+    EXPECT_EQ(std::count(back.mesh.regions.begin(), back.mesh.regions.end(), back.mesh.regions[0]),
+              std::count(cube.regions.begin(), cube.regions.end(),
+                         cube.regions[ending == ".obj" || ending == ".stl" ? 2 : 0]));
+  }
+  EXPECT_THROW(write_mesh(generate_box({}), folder / "box.stl"), InvalidArgument);
 }
 
 TEST(SurfaceFiles, LinesMayEndInTwoBytes) {
