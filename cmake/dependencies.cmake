@@ -15,6 +15,9 @@ if(DARTCAST_IO)
   find_package(EXPAT REQUIRED)
   find_path(LZ4_INCLUDE_DIR lz4.h REQUIRED)  # liblz4-dev has no package file for CMake
   find_library(LZ4_LIBRARY lz4 REQUIRED)
+  # For .vtkhdf alone: dartcast is built without it, too. CMake's own search needs a compiler of C.
+  find_path(HDF5_INCLUDE_DIR hdf5.h PATH_SUFFIXES hdf5/serial)
+  find_library(HDF5_LIBRARY NAMES hdf5_serial hdf5 PATH_SUFFIXES hdf5/serial)
 endif()
 if(DARTCAST_MPI)
   set(MPI_CXX_SKIP_MPICXX ON)  # the C functions alone

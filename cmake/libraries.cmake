@@ -75,6 +75,11 @@ if(DARTCAST_IO)
   add_dartcast_library(io $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> fmt::fmt tomlplusplus::tomlplusplus
                        EXPAT::EXPAT ZLIB::ZLIB ${LZ4_LIBRARY})
   target_include_directories(dartcast_io PRIVATE ${LZ4_INCLUDE_DIR})
+  if(HDF5_INCLUDE_DIR AND HDF5_LIBRARY)
+    target_include_directories(dartcast_io SYSTEM PRIVATE ${HDF5_INCLUDE_DIR})
+    target_link_libraries(dartcast_io PRIVATE ${HDF5_LIBRARY})
+    target_compile_definitions(dartcast_io PRIVATE DARTCAST_HDF5)
+  endif()
   if(CMAKE_BUILD_TYPE STREQUAL "Release")
     target_compile_options(dartcast_io PRIVATE -O1)  # more takes half as long again to compile, and no run is faster
   endif()

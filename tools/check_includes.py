@@ -60,6 +60,7 @@ MOST_LINES = 400
 THIRD_PARTY = [
     (re.compile(r"^vtk[A-Z]"), set()),
     (re.compile(r"^expat\.h"), {"formats"}),
+    (re.compile(r"^hdf5\.h"), {"output"}),
     (re.compile(r"^lz4\.h"), {"formats", "formats/vtk"}),
     (re.compile(r"^zlib\.h"), {"formats", "formats/vtk", "formats/openfoam", "report"}),
     (re.compile(r"^mpi\.h"), {"distributed"}),

@@ -14,6 +14,7 @@
 #include "dartcast/scene_file.hpp"
 #include "formats/format_table.hpp"
 #include "max_memory.hpp"
+#include "output/export_run.hpp"
 #include "output/info.hpp"
 #include "output/mesh_report_text.hpp"
 #include "scene/scene_mesh.hpp"

@@ -7,7 +7,7 @@
 int main() {
   const dartcast::MpiSession session;
   const auto ranks = dartcast::mpi_ranks();
-  const dartcast::BoxOptions box{.cells = {40, 40, 40}, .size = {40.0, 40.0, 40.0}};
+  const dartcast::BoxOptions box{.cells = {40, 40, 40}};
   dartcast::SharedEnvironment environment(dartcast::box_part(box, ranks->size(), ranks->rank()), *ranks);
   dartcast::SharedParticles particles;
   std::vector<dartcast::Vec3> starts;

@@ -1,5 +1,6 @@
 """Files of meshes, scenes and runs, and the scenes in them. Written by tools/make_stub.py."""
 from ._core import (
+<<<<<<< HEAD
     AdaptiveSubdivisionScene as AdaptiveSubdivisionScene, BarrelOptions as BarrelOptions, BodySamples as BodySamples,
     BodyScene as BodyScene, BoxOptions as BoxOptions, CELL_TYPE_NAMES as CELL_TYPE_NAMES,
     CatheterScene as CatheterScene, CellType as CellType, Compression as Compression, ContactScene as ContactScene,
@@ -19,6 +20,25 @@ from ._core import (
     SurfaceScene as SurfaceScene, TrajectoryMark as TrajectoryMark, TrajectoryPoint as TrajectoryPoint,
     UNKNOWN_PATCH as UNKNOWN_PATCH, Verdict as Verdict, VesselOptions as VesselOptions, bar_options as bar_options,
     box_part as box_part, cells_of_region as cells_of_region, check_mesh as check_mesh,
+=======
+    AdaptiveSubdivisionScene as AdaptiveSubdivisionScene, BodySamples as BodySamples, BodyScene as BodyScene,
+    CELL_TYPE_NAMES as CELL_TYPE_NAMES, CatheterScene as CatheterScene, Compression as Compression,
+    ContactScene as ContactScene, DecomposeOptions as DecomposeOptions, DeformationScene as DeformationScene,
+    EnvironmentScene as EnvironmentScene, EventScene as EventScene, ExpectedOutput as ExpectedOutput,
+    FieldScene as FieldScene, Finding as Finding, FreeRegions as FreeRegions, FreeValues as FreeValues,
+    InletParticles as InletParticles, LARGEST_POLYGON_JITTER as LARGEST_POLYGON_JITTER,
+    LARGEST_SQUARE_JITTER as LARGEST_SQUARE_JITTER, LoadedScene as LoadedScene, MAX_SEED as MAX_SEED,
+    MAX_STEPS as MAX_STEPS, MeshPart as MeshPart, MeshReport as MeshReport, Mesher as Mesher,
+    MotionScene as MotionScene, NamedSurface as NamedSurface, OutputScene as OutputScene,
+    ParticleSeeds as ParticleSeeds, ParticlesScene as ParticlesScene, PatchAngle as PatchAngle,
+    PatchArray as PatchArray, PlacedParticles as PlacedParticles, PlanOptions as PlanOptions,
+    RandomParticles as RandomParticles, RankSpread as RankSpread, RemeshScene as RemeshScene,
+    ReportOptions as ReportOptions, ReportSummary as ReportSummary, Ring as Ring, RunPlan as RunPlan,
+    SURELY_VALID_JITTER as SURELY_VALID_JITTER, SolidScene as SolidScene, StatisticsScene as StatisticsScene,
+    StatisticsSummary as StatisticsSummary, SurfaceScene as SurfaceScene, TrajectoryMark as TrajectoryMark,
+    TrajectoryPoint as TrajectoryPoint, UNKNOWN_PATCH as UNKNOWN_PATCH, Verdict as Verdict,
+    bar_options as bar_options, box_part as box_part, cells_of_region as cells_of_region,
+>>>>>>> 1130a424 (output: whole runs as .vtkhdf, .usda, .ply and .obj)
     check_surface as check_surface, decompose as decompose, dimension as dimension, divide_walls as divide_walls,
     has_parts as has_parts, histogram_text as histogram_text, is_surface_file as is_surface_file,
     load_scene_files as load_scene_files, mesh_endings as mesh_endings, mesh_part as mesh_part,

@@ -106,7 +106,7 @@ TEST_F(Command, WrongUsageIsTwo) {
   expect_failure("run a.toml -j 0", 2, "threads");
   expect_failure("run a.toml --steps many", 2, "steps");
   expect_failure("run a.toml -q -v", 2, "quiet");
-  expect_failure("convert a", 2, "OUT");
+  expect_failure("convert a", 2, "--output is required");
   EXPECT_EQ(run("--help").status, 0);
   EXPECT_EQ(run("run --help").status, 0);
   EXPECT_EQ(run("--version").out.find_first_not_of("0123456789.\n"), std::string::npos);

@@ -57,6 +57,60 @@ TEST_F(SceneVerbs, ASignalLeavesNothingOfAMesh) {
   }
 }
 
+// A run says how much it will write, about, and where particles ended.
+TEST_F(SceneVerbs, ARunSaysHowMuchItWritesAndWhereParticlesEnd) {
+  (void)write("s.toml",
+              "[environment]\ngenerator = 'box'\ncells = [4, 2, 2]\n[[particles]]\ncount = 2000\nvelocity = [2, 0, 0]\n"
+              "[[deformation]]\nkind = 'bend'\namplitude = 0.1\nlength = 2\n[motion]\ndt = 0.005\nsteps = 1200\n"
+              "[contact.patch.xmax]\nresponse = 'absorb'\n");
+  const Result r = run("run s.toml -o out");
+  ASSERT_EQ(r.status, 0) << r.error;
+  EXPECT_NE(r.out.find("output       about "), std::string::npos) << r.out;
+  EXPECT_NE(r.out.find("101 frames, one each 12 steps\n"), std::string::npos) << r.out;
+  EXPECT_NE(r.out.find("deposition   xmax: 2,000 (100.00 %), 500 per unit of area"), std::string::npos) << r.out;
+  EXPECT_NE(content(folder / "out/deposition.csv").find("\nxmax,2000,0,1,4"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/particles_001200.vtp"));
+  EXPECT_EQ(run("run s.toml -o out -q").out, "");
+  EXPECT_EQ(run("run s.toml -o out --json --steps 3").out.find("{"), 0U);
+}
+
+TEST_F(SceneVerbs, ARunIsConverted) {
+  (void)write("s.toml",
+              "[environment]\ngenerator = 'box'\ncells = [2, 2, 2]\n[[deformation]]\nkind = 'bend'\namplitude = "
+              "0.1\nlength = 2\n"
+              "[[particles]]\ncount = 7\nradius = 0.05\nvelocity = [1, 0, 0]\n[motion]\ndt = 0.1\nsteps = "
+              "4\n[output]\nevery = 2\n");
+  ASSERT_EQ(run("run s.toml -o out -q").status, 0);
+  for (const char* name : {"a.usda", "a.ply", "a.obj", "a.vtkhdf"}) {
+    const Result r = run(std::string("convert out -o ") + name);
+    if (r.error.find("built without HDF5") != std::string::npos) continue;
+    ASSERT_EQ(r.status, 0) << r.error;
+    EXPECT_EQ(r.out, std::string("3 frames in ") + name + "\n");
+  }
+  const std::string usda = content(folder / "a.usda");
+  for (const char* part : {"timeCodesPerSecond = 5\n", "def Points \"particles\"", "vector3f[] velocities.timeSamples",
+                           "            2: [(", "int[] faceVertexCounts = [4, 4", "point3f[] points.timeSamples"})
+    EXPECT_NE(usda.find(part), std::string::npos) << part;
+  for (const char* name : {"a_000000.ply", "a_000002.ply", "a_000004.ply"})
+    EXPECT_NE(content(folder / name).find("element vertex 7\n"), std::string::npos) << name;
+  EXPECT_EQ(run("check a_walls_000004.ply").status, 0);
+  EXPECT_EQ(run("check a_walls_000004.obj").status, 0);
+  expect_failure("convert out -o a.xyz", 1, ".vtkhdf");
+}
+
+TEST_F(SceneVerbs, SurfacesAreShownAndConverted) {
+  (void)write("a.off", "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n");
+  const Result info = run("info a.off");
+  EXPECT_EQ(info.status, 0);
+  EXPECT_NE(info.out.find("dartcast mesh a.off -o"), std::string::npos) << info.out;
+  EXPECT_NE(info.out.find("mesh = { surface = \"a.off\" }"), std::string::npos) << info.out;
+  for (const char* name : {"a.stl", "a.obj", "a.ply", "b.off", "a.vtp"}) {
+    ASSERT_EQ(run(std::string("convert a.off ") + name).status, 0) << name;
+    ASSERT_EQ(run(std::string("convert ") + name + " c.vtu").status, 0) << name;
+    EXPECT_NE(run(std::string("check ") + name).out.find("4 triangle"), std::string::npos) << name;
+  }
+}
+
 TEST_F(SceneVerbs, ParticlesGoBackIntoAnOpenFoamCase) {
   BoxOptions options;
   options.cells = {3, 3, 3};

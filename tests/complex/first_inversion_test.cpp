@@ -25,7 +25,7 @@ constexpr int mesh_kinds = 7;
 
 // Hexahedra, tetrahedra, prisms, pyramids, all of them mixed, polyhedra, and hexahedra that need Steiner points.
 MeshData mesh_of(int kind) {
-  if (kind == 5) return generate_octahedra({.cells = {3, 3, 3}, .size = {3, 3, 3}});
+  if (kind == 5) return generate_octahedra({.cells = {3, 3, 3}, .size = Vec3{3, 3, 3}});
   BoxOptions o;
   o.cells = {5, 4, 4};
   o.size = {5, 4, 4};
@@ -148,7 +148,7 @@ TEST(FirstFlattening, SameForAnyNumberOfThreadsAndFirstByCell) {
 }
 
 TEST(FirstFlattening, BlockedCellsCount) {
-  const MeshData plain = generate_box({.cells = {3, 3, 3}, .size = {3, 3, 3}});
+  const MeshData plain = generate_box({.cells = {3, 3, 3}, .size = Vec3{3, 3, 3}});
   MeshData blocked = plain;
   blocked.free.assign(blocked.cell_count(), 0);
   std::vector<Vec3> after = plain.points;
@@ -274,7 +274,7 @@ TEST(FollowUntil, LeavesAValidSceneCloseToTheInversion) {
 // Far from the origin rounding leaves no room at the inversion, and earlier times are taken. In a scene that leaves no
 // room at all, nothing moves.
 TEST(FollowUntil, GoesBackWhereRoundingInverts) {
-  Scene scene(generate_box({.cells = {2, 2, 2}, .origin = {0x1p+40, 0, 0}, .size = {2, 2, 2}}));
+  Scene scene(generate_box({.cells = {2, 2, 2}, .origin = {0x1p+40, 0, 0}, .size = Vec3{2, 2, 2}}));
   const auto after = mapped(scene.positions, [](const Vec3& p) {
     return Vec3{0x1p+40 - 0.7 * (p.x - 0x1p+40), p.y, p.z};
   });

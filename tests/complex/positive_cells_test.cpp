@@ -19,7 +19,7 @@ using detail::InstructionSet;
 using detail::not_proved_positive;
 
 MeshData mesh_of(int which) {
-  if (which == 5) return generate_octahedra({.cells = {2, 2, 2}, .size = {2, 2, 2}});
+  if (which == 5) return generate_octahedra({.cells = {2, 2, 2}, .size = Vec3{2, 2, 2}});
   BoxOptions o;
   o.cells = {3, 2, 2};
   o.size = {3, 2, 2};

@@ -217,10 +217,10 @@ class Extremes {
     const double blocked = random_.below(2) == 0 ? 0.2 : 0.0;
     if (dimension_ == 2) {
       return generate_rectangle(
-          {.cells = {4, 4}, .size = {4.0, 4.0}, .mixed = true, .blocked_share = blocked, .seed = seed});
+          {.cells = {4, 4}, .size = std::array{4.0, 4.0}, .mixed = true, .blocked_share = blocked, .seed = seed});
     }
     return generate_box(
-        {.cells = {3, 3, 3}, .size = {3.0, 3.0, 3.0}, .mixed = true, .blocked_share = blocked, .seed = seed});
+        {.cells = {3, 3, 3}, .size = Vec3{3.0, 3.0, 3.0}, .mixed = true, .blocked_share = blocked, .seed = seed});
   }
   Vec3 vector(double size) {
     Vec3 v = {random_.uniform(-size, size), random_.uniform(-size, size), random_.uniform(-size, size)};

@@ -17,7 +17,7 @@ namespace dartcast::patch_walls_test {
 
 // Faces between the cells of a box, as a group: walls only where one side is blocked.
 TEST(PatchWalls, APatchThatIsNamedHasAWall) {
-  MeshData mesh = generate_box({.cells = {2, 1, 1}, .size = {2, 1, 1}});
+  MeshData mesh = generate_box({.cells = {2, 1, 1}, .size = Vec3{2, 1, 1}});
   mesh.regions = {1, 2};
   mesh.region_names = {{1, "left"}, {2, "right"}};
   mesh.patch_names[7] = "membrane";
