@@ -34,6 +34,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "vtk/canonical.hpp"
@@ -76,6 +77,25 @@ void add_points(vtkPointSet& set, CanonicalText& out) {
   }
 }
 
+// Our .vtu files have texts as bytes, each ended by a 0.
+bool is_text_in_bytes(vtkAbstractArray& array) {
+  const std::string name = array.GetName() == nullptr ? "" : array.GetName();
+  return array.GetDataType() == VTK_UNSIGNED_CHAR &&
+         (name == "region_names" || name == "patch_names" || name == "free_written_by" || name == "baffle_patches");
+}
+
+void add_text_in_bytes(vtkDataArray& bytes, CanonicalText& out) {
+  std::string text;
+  for (vtkIdType i = 0; i < bytes.GetNumberOfTuples(); ++i) {
+    const char c = static_cast<char>(bytes.GetComponent(i, 0));
+    if (c != '\0') {
+      text += c;
+    } else {
+      out.text(std::exchange(text, {}));
+    }
+  }
+}
+
 void add_arrays(const char* section, vtkFieldData& data, bool texts_alone, CanonicalText& out) {
   out.line(section);
   for (int a = 0; a < data.GetNumberOfArrays(); ++a) {
@@ -84,6 +104,9 @@ void add_arrays(const char* section, vtkFieldData& data, bool texts_alone, Canon
     if (auto* texts = vtkStringArray::SafeDownCast(&array)) {
       out.line(name);
       for (vtkIdType i = 0; i < texts->GetNumberOfValues(); ++i) out.text(texts->GetValue(i));
+    } else if (texts_alone && is_text_in_bytes(array)) {
+      out.line(name);
+      add_text_in_bytes(*vtkDataArray::SafeDownCast(&array), out);
     } else if (auto* numbers = vtkDataArray::SafeDownCast(&array); numbers != nullptr && !texts_alone) {
       out.line(name);
       out.size(static_cast<std::size_t>(numbers->GetNumberOfComponents()));
