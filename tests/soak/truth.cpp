@@ -133,25 +133,33 @@ std::string Walls::check_first(const ParticleState& before, const Vec3& target, 
     const auto touched = std::span(before.touching.data(), before.touching_count);
     if (std::find(touched.begin(), touched.end(), hits[0].face) != touched.end() && first->time_of_impact == 0.0)
       return "";
-    // At an edge or a vertex the way may lead out of the front of some walls, or along some. One must be in it.
-    const Wall* across = nullptr;
-    bool along = false;
-    for (const WallHit& hit : hits) {
-      const Wall& w = walls_[number_.at({hit.face.cell.value, hit.face.face, hit.triangle})];
+    bool along = false, in_time = false, late = false;
+    const auto look_at = [&](const Wall& w) {
       const int from = side(w, p);
       const int to = side(w, q);
-      if (from < 0 || to > 0 || !passage(p, q, segment(w), plane_).touching) continue;
-      along = along || from == to;
-      if (from != to && across == nullptr) across = &w;
+      if (from < 0 || to > 0 || !passage(p, q, segment(w), plane_).touching) return;
+      if (from == to) {
+        along = true;
+        return;
+      }
+      const When time = when(w);
+      const bool is_then = (Dyadic(first->time_of_impact) * time.d - time.n).abs() <= Dyadic(1e-9) * time.d;
+      if (is_then && !in_time) least_time = time;
+      (is_then ? in_time : late) = true;
+    };
+    // At an edge or a vertex the way may lead out of the front of some walls, or along some. One must be in it, then.
+    for (const WallHit& hit : hits) look_at(walls_[number_.at({hit.face.cell.value, hit.face.face, hit.triangle})]);
+    if (late && !in_time) return fmt::format("a contact at the wrong time {}", first->time_of_impact);
+    // Triangles of a face count as one wall where rounding alone bends it: then any of them may be the one.
+    if (!in_time && !along) {
+      for (const WallHit& hit : hits) {
+        const auto end = number_.upper_bound({hit.face.cell.value, hit.face.face, UINT16_MAX});
+        for (auto i = number_.lower_bound({hit.face.cell.value, hit.face.face, 0}); i != end; ++i)
+          look_at(walls_[i->second]);
+      }
     }
-    if (across != nullptr) {
-      least_time = when(*across);
-      const Dyadic off = (Dyadic(first->time_of_impact) * least_time.d - least_time.n).abs();
-      if (off > Dyadic(1e-9) * least_time.d)
-        return fmt::format("a contact at the wrong time {}", first->time_of_impact);
-    } else if (!along) {
+    if (!in_time && !along)
       return fmt::format("a contact at {} with walls that are not on the way", first->time_of_impact);
-    }
   }
   for (const Wall& w : walls_) {
     if (!meet(low, high, w.low, w.high)) continue;
