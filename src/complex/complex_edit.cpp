@@ -160,6 +160,7 @@ ComplexEditReport ComplexEdit::make_final(const SteinerWeights& points, std::siz
   if (!complex_.back_.empty()) {
     complex_.back_.resize(complex_.front_.size());
     for (const Vertex v : news) complex_.back_[v.value] = complex_.front_[v.value];
+    points.compute(complex_.back_);  // where a move back to there would put them
   }
   std::erase_if(complex_.invalid_, [&](const InvalidCell& c) { return !map().contains(c.cell); });
   created_->keep();
