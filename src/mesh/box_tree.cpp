@@ -14,8 +14,7 @@ BoxTree::BoxTree(std::vector<Box> boxes) : boxes_(std::move(boxes)), order_(boxe
   nodes_.push_back({{}, 0, static_cast<std::uint32_t>(order_.size())});
   for (std::size_t n = 0; n < nodes_.size(); ++n) {
     Node node = nodes_[n];
-    node.box = boxes_[order_[node.begin]];
-    for (std::uint32_t i = node.begin + 1; i < node.end; ++i) node.box = join(node.box, boxes_[order_[i]]);
+    node.box = box_of(node.begin, node.end);
     if (node.end - node.begin > leaf_size) {
       const Vec3 size = node.box.high - node.box.low;
       double Vec3::*axis =
@@ -32,6 +31,22 @@ BoxTree::BoxTree(std::vector<Box> boxes) : boxes_(std::move(boxes)), order_(boxe
       nodes_.push_back({{}, middle, node.end});
     }
     nodes_[n] = node;
+  }
+}
+
+Box BoxTree::box_of(std::uint32_t begin, std::uint32_t end) const {
+  Box box = boxes_[order_[begin]];
+  for (std::uint32_t i = begin + 1; i < end; ++i) box = join(box, boxes_[order_[i]]);
+  return box;
+}
+
+// Children come behind their parents.
+void BoxTree::refit(std::vector<Box> boxes) {
+  boxes_ = std::move(boxes);
+  for (std::size_t n = nodes_.size(); n-- > 0;) {
+    Node& node = nodes_[n];
+    node.box =
+        node.child == 0 ? box_of(node.begin, node.end) : join(nodes_[node.child].box, nodes_[node.child + 1].box);
   }
 }
 

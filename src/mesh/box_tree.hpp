@@ -2,8 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "dartcast/vec3.hpp"
@@ -27,23 +29,28 @@ inline bool overlap(const Box& a, const Box& b) {
          a.low.z <= b.high.z && b.low.z <= a.high.z;
 }
 
-/// Built once over a list of boxes; cost n log n.
+/// Built once over a list of boxes; cost n log n. Fewer than 2^32.
 class BoxTree {
  public:
   explicit BoxTree(std::vector<Box> boxes);
+
+  /// As many boxes in place of those, which have moved; cost n. Queries take longer the more they have moved.
+  void refit(std::vector<Box> boxes);
+  /// Gives the boxes back, for refit().
+  [[nodiscard]] std::vector<Box> take_boxes() { return std::move(boxes_); }
 
   /// Calls visit(index) for each box that overlaps `query`, until visit returns false.
   template <class Visit>
   void query(const Box& query, Visit&& visit) const {
     if (nodes_.empty()) return;
-    std::vector<std::uint32_t> open = {0};
-    while (!open.empty()) {
-      const Node node = nodes_[open.back()];
-      open.pop_back();
+    std::array<std::uint32_t, 64> open;  // at most one more than the tree's depth: halves of fewer than 2^32
+    open[0] = 0;
+    for (std::size_t size = 1; size > 0;) {
+      const Node& node = nodes_[open[--size]];
       if (!overlap(node.box, query)) continue;
       if (node.child != 0) {
-        open.push_back(node.child);
-        open.push_back(node.child + 1);
+        open[size++] = node.child;
+        open[size++] = node.child + 1;
         continue;
       }
       for (std::uint32_t i = node.begin; i < node.end; ++i) {
@@ -59,6 +66,8 @@ class BoxTree {
     std::uint32_t end;
     std::uint32_t child = 0;  // the first of two children; 0: a leaf
   };
+
+  [[nodiscard]] Box box_of(std::uint32_t begin, std::uint32_t end) const;
 
   std::vector<Box> boxes_;
   std::vector<std::uint32_t> order_;
