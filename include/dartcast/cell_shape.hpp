@@ -179,6 +179,8 @@ class Shape {
   /// Precondition: no polygon.
   [[nodiscard]] std::uint16_t phi2(std::uint16_t dart) const { return phi2_[dart]; }
   [[nodiscard]] std::span<const std::uint16_t> corners(std::uint16_t face) const { return key_.faces[face].corners; }
+  /// A bit for each point of a face: its corners and its Steiner point. Precondition: point_count() <= 64.
+  [[nodiscard]] std::uint64_t points_of_face(std::uint16_t face) const { return points_of_face_[face]; }
 
   [[nodiscard]] const std::vector<ImplicitSimplex>& simplices() const { return simplices_; }
   /// Empty if the shape is flat, or a polygon. The first call makes them, because most shapes that an edit makes are
@@ -224,6 +226,7 @@ class Shape {
 
  private:
   void number_darts();
+  void number_points_of_faces();
   void sew_darts();
   void make_simplices();
   void make_triangles();
@@ -244,6 +247,7 @@ class Shape {
   std::uint16_t point_count_ = 0;
   std::vector<std::uint16_t> origin_, face_of_, first_dart_, phi2_;
   std::vector<std::uint16_t> darts_at_, first_dart_at_;  // by corner: those with this origin
+  std::vector<std::uint64_t> points_of_face_;            // none where there are too many points
   std::vector<ImplicitSimplex> simplices_;
   // Owned; null until they are needed.
   mutable std::atomic<const Stars*> stars_ = nullptr;

@@ -21,6 +21,10 @@
 
 namespace dartcast {
 
+namespace detail {
+class StepDecider;
+}
+
 class CellComplex;         // dartcast/cell_complex.hpp
 class CombinatorialMap;    // dartcast/combinatorial_map.hpp
 class ComplexEdit;         // dartcast/complex_edit.hpp
@@ -289,7 +293,11 @@ class Environment {
 
  private:
   friend class PartEnvironment;
+  friend class SimultaneousStepper;
   friend std::unique_ptr<Environment> environment_as_it_is(const MeshData& mesh);
+  using MakeDecider = std::function<std::unique_ptr<detail::StepDecider>(const ContactCallback&)>;
+  StepReport advance_by(const MakeDecider& make, Particles& particles, std::span<const Vec3> targets,
+                        const ContactCallback& respond, const StepOptions& options);
 
   struct Members;  // src/environment/environment_members.hpp
   explicit Environment(std::unique_ptr<Members> members);

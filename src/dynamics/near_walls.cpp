@@ -7,6 +7,7 @@
 
 #include "complex/simplex.hpp"
 #include "dartcast/predicates.hpp"
+#include "dynamics/reached_faces.hpp"
 
 namespace dartcast {
 
@@ -32,24 +33,9 @@ std::array<Vertex, 3> key_of(const NearWall& w, const NearestOnTriangle& nearest
   return key;
 }
 
-// The corners before and after the last move; both as they are now if `before` is `after`.
-NearWall wall_at(const CellView& cell, CellFace face, std::uint16_t triangle, std::span<const Vec3> before,
-                 std::span<const Vec3> after) {
-  NearWall wall;
-  wall.face = face;
-  wall.triangle = triangle;
-  wall.local = cell.shape().triangle(face.face, triangle);
-  for (unsigned i = 0; i < 3; ++i) {
-    wall.vertex[i] = cell.vertex(wall.local[i]);
-    wall.corners.from[i] = before[wall.vertex[i].value];
-    wall.corners.to[i] = after[wall.vertex[i].value];
-  }
-  return wall;
-}
-
-// Takes `point`, a place of these vertices, and a wall that has them all. Whether the way to another corner of the wall
-// leads nearer to the centre, by more than rounding. If it does not by itself, the same place of another wall is beside
-// it, no farther away than `same_place`.
+// Whether the way from `point`, a place of these vertices, to another corner of a wall that has them all leads nearer to
+// the centre, by more than rounding. Where it does not by itself, the same place of another wall is beside it, no farther
+// away than `same_place`.
 bool goes_nearer(const NearWall& w, const std::array<Vertex, 3>& key, const Vec3& point, const Vec3& centre,
                  double same_place) {
   const auto is_in = [](Vertex v, const std::array<Vertex, 3>& list) {
@@ -82,7 +68,10 @@ double touching_slack(const Vec3& centre, double radius) {
   return touching_bound * (radius + std::max({std::abs(centre.x), std::abs(centre.y), std::abs(centre.z)}));
 }
 
-// The space that a sphere or an element sweeps: a box, and if that is much too large, also a tube around a segment.
+// The space that a sphere or an element sweeps: a box, and where that is much too large, also a tube around a segment.
+//
+// For a point's way both are in a frame that moves about as the vertices there, so that they are small if all move
+// together. The frame moves straight, so ways in it are straight, too. Any shift is right.
 struct NearWalls::Reach {
   struct Bounds {
     Vec3 low;
@@ -103,10 +92,13 @@ struct NearWalls::Reach {
   };
 
   Bounds box;
+  Vec3 shift;            // of the frame
   bool is_long = false;  // whether the tube counts
-  Vec3 begin;            // of the tube's segment
-  Vec3 way;              // to the segment's end
-  double radius = 0.0;   // of the tube
+  // Cells are looked at without the tube up to this number: most ways of points reach few.
+  std::size_t without_tube = 0;
+  Vec3 begin;           // of the tube's segment
+  Vec3 way;             // to the segment's end
+  double radius = 0.0;  // of the tube
 
   explicit Reach(const MovingSphere& s) : box{s.from, s.from}, begin(s.from), way(s.to - s.from) {
     box.include(s.to);
@@ -114,7 +106,15 @@ struct NearWalls::Reach {
     box.widen(radius);
     is_long = norm(way) > 2.0 * radius;
   }
-  // A point's tube is around its way. An edge's is around the edge at the time 1/2. No point of the edge is ever farther
+  // A point.
+  Reach(const Vec3& from, const Vec3& to, const Vec3& frame)
+      : box{from, from}, shift(frame), without_tube(8), begin(from), way(to - frame - from) {
+    box.include(to - frame);
+    radius = rounding();
+    box.widen(radius);
+    is_long = true;
+  }
+  // A point's tube is around its way. An edge's is around the edge at the time 1/2: no point of the edge is ever farther
   // from where it is then than half the largest displacement of the ends. A triangle has none.
   Reach(const MovingElement& e, double margin) : box{e.from[0], e.from[0]} {
     double farthest = 0.0;
@@ -135,26 +135,42 @@ struct NearWalls::Reach {
     const Vec3 largest = extent_of(box.low, box.high);
     return box_margin * std::max({largest.x, largest.y, largest.z});
   }
-  static constexpr unsigned all_sides = 63;
-  // The sides of the box that p lies beyond, a bit for each.
-  [[nodiscard]] unsigned sides(const Vec3& p) const {
-    const auto bit = [](bool beyond, unsigned n) { return static_cast<unsigned>(beyond) << n; };
-    return bit(p.x < box.low.x, 0) | bit(p.x > box.high.x, 1) | bit(p.y < box.low.y, 2) | bit(p.y > box.high.y, 3) |
-           bit(p.z < box.low.z, 4) | bit(p.z > box.high.z, 5);
-  }
   static Bounds nothing() {
     constexpr double far = std::numeric_limits<double>::infinity();
     return {{far, far, far}, {-far, -far, -far}};
   }
-  [[nodiscard]] bool meets(const Bounds& b) const {
+  [[nodiscard]] bool meets(const Bounds& b, std::size_t cells) const {
     if (!box.meets(b)) return false;
-    if (!is_long) return true;
+    if (!is_long || cells < without_tube) return true;
     const Vec3 middle = (b.low + b.high) * 0.5;
     const double share = std::clamp(dot(middle - begin, way) / dot(way, way), 0.0, 1.0);
     const double apart = norm(middle - (begin + way * share));
     return !(apart > (radius + 0.5 * norm(b.high - b.low)) * (1.0 + 0x1p-20));
   }
 };
+
+// The corners before and after the last move; both as they are now where `before` is `after`.
+NearWall NearWalls::wall_at(const CellView& cell, CellFace face, std::uint16_t triangle, std::span<const Vec3> before,
+                            std::span<const Vec3> after) {
+  NearWall wall;
+  wall.face = face;
+  wall.triangle = triangle;
+  wall.local = cell.shape().triangle(face.face, triangle);
+  for (unsigned i = 0; i < 3; ++i) {
+    wall.vertex[i] = cell.vertex(wall.local[i]);
+    wall.corners.from[i] = before[wall.vertex[i].value];
+    wall.corners.to[i] = after[wall.vertex[i].value];
+  }
+  return wall;
+}
+
+// Else the wall belongs to a cell that is invalid, or was before the move.
+bool NearWalls::is_in_range(const NearWall& wall) {
+  const auto all_are = [](const std::array<Vec3, 3>& corners) {
+    return std::all_of(corners.begin(), corners.end(), in_exact_range);
+  };
+  return all_are(wall.corners.from) && all_are(wall.corners.to);
+}
 
 void NearWalls::grow() {
   table_.assign(std::max<std::size_t>(64, table_.size() * 2), 0);
@@ -186,14 +202,12 @@ void NearWalls::add_walls(const CellComplex& complex, const Reach& reach, CellFa
   const CellView cell = complex.map().view(face.cell);
   for (std::uint16_t t = 0; t < cell.shape().triangle_count(face.face); ++t) {
     const NearWall wall = wall_at(cell, face, t, motion.before, motion.after);
-    Reach::Bounds bounds{wall.corners.to[0], wall.corners.to[0]};
-    bool in_range = true;  // else the wall belongs to a cell that is invalid, or was before the move
+    Reach::Bounds bounds{wall.corners.from[0], wall.corners.from[0]};
     for (unsigned i = 0; i < 3; ++i) {
       bounds.include(wall.corners.from[i]);
-      bounds.include(wall.corners.to[i]);
-      in_range = in_range && in_exact_range(wall.corners.from[i]) && in_exact_range(wall.corners.to[i]);
+      bounds.include(wall.corners.to[i] - reach.shift);
     }
-    if (in_range && reach.meets(bounds)) walls_.push_back(wall);
+    if (is_in_range(wall) && reach.meets(bounds, cells_.size())) walls_.push_back(wall);
   }
 }
 
@@ -205,23 +219,20 @@ void NearWalls::visit(const CellComplex& complex, const Reach& reach, Cell c, co
   if (motion.places != nullptr) motion.places->reach(cell.vertices());
   const Vec3* after = motion.after.data();
   const Vec3* before = motion.before.data();
-  const bool moving = !motion.at_rest();
-  sides_.clear();
-  for (const std::uint32_t v : cell.vertices()) {
-    const unsigned sides = reach.sides(after[v]);
-    sides_.push_back(static_cast<std::uint8_t>(moving ? sides & reach.sides(before[v]) : sides));
-  }
+  const bool few = shape.point_count() <= 64 && shape.face_count() <= 64;
+  const std::uint64_t reached = few ? detail::reached_faces(shape, cell.vertices().data(), before, after,
+                                                            {reach.box.low, reach.box.high, reach.shift})
+                                    : ~std::uint64_t{0};
+  const bool by_tube = reach.is_long && cells_.size() >= reach.without_tube;
   for (std::uint16_t f = 0; f < shape.face_count(); ++f) {
-    unsigned sides = Reach::all_sides;
-    for_each_point(shape, f, [&](std::uint16_t p) { sides &= sides_[p]; });
-    if (sides != 0) continue;
-    if (reach.is_long) {
+    if (few && ((reached >> f) & 1U) == 0) continue;
+    if (!few || by_tube) {
       Reach::Bounds bounds = Reach::nothing();
       for_each_point(shape, f, [&](std::uint16_t p) {
-        bounds.include(after[cell.vertex(p).value]);
-        if (moving) bounds.include(before[cell.vertex(p).value]);
+        bounds.include(after[cell.vertex(p).value] - reach.shift);
+        bounds.include(before[cell.vertex(p).value]);
       });
-      if (!reach.meets(bounds)) continue;
+      if (!reach.meets(bounds, cells_.size())) continue;
     }
     if (cell.is_wall(f))
       add_walls(complex, reach, {c, f}, motion);
@@ -255,6 +266,22 @@ std::span<const NearWall> NearWalls::search(const CellComplex& complex, Cell cel
 std::span<const NearWall> NearWalls::search(const CellComplex& complex, Cell cell, const MovingElement& element,
                                             const VertexMotion& motion, double margin) {
   return run(complex, {&cell, 1}, Reach(element, margin), motion);
+}
+
+std::span<const NearWall> NearWalls::search_way(const CellComplex& complex, Cell cell, const Vec3& from, const Vec3& to,
+                                                const VertexMotion& motion) {
+  const auto vertices = complex.map().view(cell).vertices();
+  if (motion.places != nullptr) motion.places->reach(vertices);
+  Vec3 shift;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < std::min<std::size_t>(4, vertices.size()); ++i) {  // the least: one may be far away
+    const Vec3 moved = motion.after[vertices[i]] - motion.before[vertices[i]];
+    const double size = std::max({std::abs(moved.x), std::abs(moved.y), std::abs(moved.z)});
+    if (!(size < least)) continue;
+    least = size;
+    shift = moved;
+  }
+  return run(complex, {&cell, 1}, Reach(from, to, shift), motion);
 }
 
 std::span<const NearWall> NearWalls::search(const CellComplex& complex, std::span<const Cell> starts, const Box& box,

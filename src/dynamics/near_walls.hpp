@@ -108,6 +108,11 @@ class NearWalls {
   std::span<const NearWall> search(const CellComplex& complex, Cell cell, const MovingElement& element,
                                    const VertexMotion& motion, double margin = 0.0);
 
+  /// The same for a point that goes from `from` to `to`: the walls that it may touch. It looks in a frame that moves with
+  /// the cell's vertices, so it reaches fewer cells.
+  std::span<const NearWall> search_way(const CellComplex& complex, Cell cell, const Vec3& from, const Vec3& to,
+                                       const VertexMotion& motion);
+
   /// Walls that meet a box on their way, for all elements that stay in it: those of search() for each, and more. `starts`:
   /// the cells that hold the elements' first corners before the move. All else is as above.
   std::span<const NearWall> search(const CellComplex& complex, std::span<const Cell> starts, const Box& box,
@@ -129,12 +134,25 @@ class NearWalls {
   [[nodiscard]] static WallFeature place_on(const CellComplex& complex, CellFace face, std::uint16_t triangle,
                                             const Vec3& centre, bool moved);
 
+  /// Calls visit(wall) for each triangle of a wall face in the last move, if its corners are in the exact range.
+  template <class Visit>
+  static void for_each_triangle(const CellComplex& complex, CellFace face, Visit&& visit) {
+    const CellView cell = complex.map().view(face.cell);
+    for (std::uint16_t t = 0; t < cell.shape().triangle_count(face.face); ++t) {
+      const NearWall wall = wall_at(cell, face, t, complex.previous_positions(), complex.positions());
+      if (is_in_range(wall)) visit(wall);
+    }
+  }
+
   /// Cells that the last search looked at, in the order in which it reached them.
   [[nodiscard]] std::span<const Cell> cells_reached() const { return cells_; }
 
  private:
   struct Reach;
 
+  static NearWall wall_at(const CellView& cell, CellFace face, std::uint16_t triangle, std::span<const Vec3> before,
+                          std::span<const Vec3> after);
+  static bool is_in_range(const NearWall& wall);
   [[nodiscard]] std::size_t slot(Cell c) const;
   void grow();
   void add(Cell c);
@@ -148,7 +166,6 @@ class NearWalls {
   std::vector<Cell> cells_;           // in the order in which they were reached
   std::vector<std::uint32_t> table_;  // of cells reached: one more than the place in cells_, 0 if empty
   std::vector<std::size_t> slots_;    // of cells_, in the table
-  std::vector<std::uint8_t> sides_;   // of a cell's points, while it is looked at
   std::vector<NearWall> walls_;
   std::vector<WallFeature> features_;
   std::vector<NearestOnTriangle> nearest_;   // of walls_

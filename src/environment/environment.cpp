@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <memory>
 #include <utility>
 
 #include "base/parallel.hpp"
@@ -165,9 +166,9 @@ StepReport Environment::Members::advance(Particles& particles, std::span<const V
 template <class Callback, class Take>
 StepReport Environment::Members::watched(const Environment& environment, Particles& particles,
                                          std::span<const Vec3> targets, const StepOptions& options,
-                                         const Callback& respond, const Take& take) const {
+                                         const Callback& respond, const Take& take, bool simultaneous) const {
   if (!replay_hook) return take(respond);
-  WatchedStep step(environment, particles, targets, options, false);
+  WatchedStep step(environment, particles, targets, options, simultaneous);
   const Callback noted = step.noted(respond);
   StepReport report = step.run([&] { return take(noted); });
   step.check(particles.states(), particles.details().weights);
@@ -313,14 +314,21 @@ void Environment::check_advance(const Particles& particles, const StepOptions& o
 
 StepReport Environment::advance(Particles& particles, std::span<const Vec3> targets, const ContactCallback& respond,
                                 const StepOptions& options) {
+  return advance_by({}, particles, targets, respond, options);
+}
+
+// `make`: makes the decider of the step, with the response that it has to call; none: there is no decider.
+StepReport Environment::advance_by(const MakeDecider& make, Particles& particles, std::span<const Vec3> targets,
+                                   const ContactCallback& respond, const StepOptions& options) {
   check_advance(particles, options);
   const auto take = [&](const ContactCallback& answer) {
     const bool may_throw = answer && !detail::is_library_response(answer);  // the caller's code may throw
-    return members_->advance(
-        particles, targets,
-        detail::BatchStepper(complex(), awaits_advance(particles), threads(), options, answer, may_throw));
+    const std::unique_ptr<detail::StepDecider> decider = make ? make(answer) : nullptr;
+    return members_->advance(particles, targets,
+                             detail::BatchStepper(complex(), awaits_advance(particles), threads(), options, answer,
+                                                  may_throw, decider.get()));
   };
-  return members_->watched(*this, particles, targets, options, respond, take);
+  return members_->watched(*this, particles, targets, options, respond, take, static_cast<bool>(make));
 }
 
 StepReport Environment::advance_in_rounds(Particles& particles, std::span<const Vec3> targets,
@@ -331,7 +339,7 @@ StepReport Environment::advance_in_rounds(Particles& particles, std::span<const 
     return members_->advance(particles, targets,
                              detail::BatchStepper(complex(), awaits_advance(particles), threads(), options, answer));
   };
-  return members_->watched(*this, particles, targets, options, respond, take);
+  return members_->watched(*this, particles, targets, options, respond, take, false);
 }
 
 void Environment::set_replay_hook(ReplayHook hook) { members_->replay_hook = std::move(hook); }

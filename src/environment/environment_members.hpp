@@ -40,7 +40,7 @@ struct Environment::Members {
   /// Calls take(respond), which takes the step; watched, if there is a replay hook.
   template <class Callback, class Take>
   StepReport watched(const Environment& environment, Particles& particles, std::span<const Vec3> targets,
-                     const StepOptions& options, const Callback& respond, const Take& take) const;
+                     const StepOptions& options, const Callback& respond, const Take& take, bool simultaneous) const;
 
   CellComplex complex;
   Threads threads;

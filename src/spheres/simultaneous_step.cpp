@@ -132,12 +132,33 @@ StepResult SimultaneousStep::step(std::uint32_t particle, ParticleState& state, 
   return run.result;
 }
 
+// If all cells in reach are positive during the move, a point that touches none of the walls there ends at its target. Else
+// the cells carry it. A walk that meets no wall and ends there is right in both cases, so no cell is looked at here.
+bool SimultaneousStep::is_free(const ParticleState& state, const Vec3& target, Memory& memory) const {
+  const unsigned dimension = complex_.map().dimension();
+  const auto is_apart = [&](const NearWall& wall) {
+    const auto pair = pair_of(state.position, target, wall, dimension);
+    return detail::filtered_touch(pair, detail::PairKind::vertex_face).answer == detail::FilterAnswer::apart;
+  };
+  if (all_walls_ != nullptr) return all_walls_->all_near(complex_, state.position, target, is_apart);
+  const VertexMotion walls = motion_of(memory, 0.0, 1.0);
+  const auto near = memory.near.search_way(complex_, state.cell, state.position, target, walls);
+  return std::all_of(near.begin(), near.end(), is_apart);
+}
+
+VertexMotion SimultaneousStep::motion_of(Memory& memory, double begin, double end) const {
+  const bool whole = begin == 0.0 && end == 1.0;
+  if (whole && complex_.map().dimension() == 3) return {complex_.previous_positions(), complex_.positions(), nullptr};
+  memory.places.start(complex_, begin, end);
+  return {memory.places.before(), memory.places.after(), &memory.places};
+}
+
 // Up to the target, or to the next contact and its answer: `leg` is then the next one.
 SimultaneousStep::LegEnd SimultaneousStep::take(Run& run, SimultaneousLeg& leg) const {
   Memory& memory = run.memory;
   if (!look(memory, leg, leg.to, 1.0)) return LegEnd::undecided;
   if (memory.touches.empty()) {
-    run.state.put(holding(memory, leg, leg.to, 1.0), leg.to);
+    if (run.contact_count > 0 || !walk(run, leg.to)) run.state.put(holding(memory, leg, leg.to, 1.0), leg.to);
     return LegEnd::arrived;
   }
   keep_first_touches(memory);
@@ -165,6 +186,21 @@ SimultaneousStep::LegEnd SimultaneousStep::take(Run& run, SimultaneousLeg& leg) 
   return stop ? LegEnd::goes_on : LegEnd::on_wall;
 }
 
+// Whether a walk of the carried point meets no wall and ends at the target: then it takes the step, as the batch would. If
+// several simplices hold the target, it finds the same one.
+bool SimultaneousStep::walk(Run& run, const Vec3& target) const {
+  ParticleState state = run.state;
+  Weights weights = run.weights;
+  ContactList contacts;
+  Counters counters;
+  StepState step;
+  step.begin(run.particle, state, target, contacts);
+  stepper_.run_to_contact(step, {state, weights, contacts, counters});
+  if (step.waits() || state.held || state.position != target) return false;
+  run.state = state;
+  return true;
+}
+
 // The displacement of a wall's point in the whole step: of the one nearest to x at a time.
 Vec3 SimultaneousStep::wall_displacement(const NearWall& wall, const Vec3& x, double time) const {
   const WallCorners before = corners_at(complex_, wall.vertex, 0.0);
@@ -187,12 +223,8 @@ bool SimultaneousStep::presses(const Memory& memory, const SimultaneousLeg& leg)
 // The touches on the way to a place at a time. Returns false where a cell in reach becomes flat: they are not known then.
 bool SimultaneousStep::look(Memory& memory, const SimultaneousLeg& leg, const Vec3& to, double end) const {
   const unsigned dimension = complex_.map().dimension();
-  memory.places.start(complex_, leg.begin, end);
-  const VertexMotion walls = {memory.places.before(), memory.places.after(), &memory.places};
-  MovingElement point;
-  point.from[0] = leg.from;
-  point.to[0] = to;
-  const auto near = memory.near.search(complex_, leg.at.cell, point, walls);
+  const VertexMotion walls = memory.motion = motion_of(memory, leg.begin, end);
+  const auto near = memory.near.search_way(complex_, leg.at.cell, leg.from, to, walls);
   memory.touches.clear();
   if (first_flat_time(complex_, memory.near.cells_reached(), walls)) return false;
   for (const NearWall& wall : near) {
@@ -205,7 +237,7 @@ bool SimultaneousStep::look(Memory& memory, const SimultaneousLeg& leg, const Ve
 
 // The simplex that holds a point at the end of the way that was looked at last, which is free.
 SimplexId SimultaneousStep::holding(const Memory& memory, const SimultaneousLeg& leg, const Vec3& x, double end) const {
-  const auto positions = memory.places.after();
+  const auto positions = memory.motion.after;
   for (const Cell c : memory.near.cells_reached()) {
     const std::size_t count = complex_.map().view(c).shape().simplices().size();
     for (std::uint16_t s = 0; s < count; ++s) {

@@ -2,6 +2,7 @@
 // same time".
 //
 // A leg is a straight way of the point from a time to the end of the step, among vertices on their straight ways.
+// Most points touch none in a step: is_free() proves it with filters alone, and a batch of walks takes the step. Else:
 //  1. look()          the walls that the point comes to in the leg, with the exact time of each touch
 //  2. no touch        the point ends at its target, in the simplex among the cells reached that holds it
 //  3. stop_before()   else the point goes on to just before the first touch, once this rounded way is proved free
@@ -19,6 +20,7 @@
 #include "dartcast/contact.hpp"
 #include "dartcast/particle_state.hpp"
 #include "dartcast/step.hpp"
+#include "dynamics/moving_walls.hpp"
 #include "dynamics/near_walls.hpp"
 #include "dynamics/places_between.hpp"
 #include "tracking/step.hpp"
@@ -45,14 +47,24 @@ class SimultaneousStep {
 
     NearWalls near;
     PlacesBetween places;
+    VertexMotion motion;         ///< of the last look
     std::vector<Touch> touches;  ///< of the last look
     std::vector<Touch> met;      ///< of the contact
     std::uint64_t pairs = 0;     ///< of this step
   };
 
-  /// The references must outlive it. The complex has been moved for this step.
-  SimultaneousStep(const CellComplex& complex, const StepOptions& options, const ContactCallback& respond)
-      : complex_(complex), options_(options), respond_(respond), stepper_(complex, true, options, respond) {}
+  /// The references must outlive it. The complex has been moved for this step. `all_walls`: its walls; none: each point's are
+  /// searched for.
+  SimultaneousStep(const CellComplex& complex, const StepOptions& options, const ContactCallback& respond,
+                   const MovingWalls* all_walls)
+      : complex_(complex),
+        options_(options),
+        respond_(respond),
+        stepper_(complex, true, options, respond),
+        all_walls_(all_walls) {}
+
+  /// Whether the point proves to touch no wall on its way.
+  bool is_free(const ParticleState& state, const Vec3& target, Memory& memory) const;
 
   /// As Stepper::step().
   StepResult step(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
@@ -63,7 +75,9 @@ class SimultaneousStep {
   struct Stop;
   enum class LegEnd : std::uint8_t { arrived, stopped, goes_on, on_wall, undecided };
 
+  VertexMotion motion_of(Memory& memory, double begin, double end) const;
   LegEnd take(Run& run, SimultaneousLeg& leg) const;
+  bool walk(Run& run, const Vec3& target) const;
   bool look(Memory& memory, const SimultaneousLeg& leg, const Vec3& to, double end) const;
   [[nodiscard]] SimplexId holding(const Memory& memory, const SimultaneousLeg& leg, const Vec3& x, double end) const;
   static void keep_first_touches(Memory& memory);
@@ -79,6 +93,7 @@ class SimultaneousStep {
   const StepOptions& options_;
   const ContactCallback& respond_;
   Stepper stepper_;
+  const MovingWalls* all_walls_;
 };
 
 }  // namespace dartcast

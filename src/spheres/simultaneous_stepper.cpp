@@ -1,25 +1,76 @@
-// Many points, in chunks over threads. Each chunk has memory of its own, and no point knows of another.
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <optional>
+// Many points: a batch of walks takes those that prove to touch no wall, and SimultaneousStep the others.
+#include <memory>
+#include <mutex>
 #include <vector>
 
-#include "base/parallel.hpp"
-#include "dartcast/error.hpp"
+#include "dartcast/combinatorial_map.hpp"
 #include "dartcast/spheres.hpp"
-#include "environment/watched_step.hpp"
+#include "environment/environment_members.hpp"
 #include "spheres/simultaneous_step.hpp"
-#include "tracking/checked_point.hpp"
+#include "tracking/batch/step_decider.hpp"
 
 namespace dartcast {
 
 struct SimultaneousStepper::Buffers {
-  std::vector<SimultaneousStep::Memory> memory;
-  std::vector<ParticleState> states;
-  std::vector<Weights> weights;
-  std::vector<Vec3> targets;
+  MovingWalls walls;
+  std::mutex mutex;
+  // Memories that no thread uses. No result depends on which one a thread gets.
+  std::vector<std::unique_ptr<SimultaneousStep::Memory>> idle;
 };
+
+namespace {
+
+class SimultaneousDecider final : public detail::StepDecider {
+ public:
+  SimultaneousDecider(const CellComplex& complex, const StepOptions& options, const ContactCallback& respond,
+                      const MovingWalls* walls, SimultaneousStepper::Buffers& buffers)
+      : step_(complex, options, respond, walls), buffers_(buffers) {}
+
+  void choose(std::span<const ParticleState> states, std::span<const Vec3> targets,
+              std::span<detail::StepTaker> takers) const override {
+    const Borrowed memory(buffers_);
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      takers[i] = states[i].held || states[i].touching_count > 0          ? detail::StepTaker::carried
+                  : step_.is_free(states[i], targets[i], memory.memory()) ? detail::StepTaker::walk
+                                                                          : detail::StepTaker::decider;
+    }
+  }
+  StepResult step(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
+                  ContactList& contacts, Counters& counters) const override {
+    const Borrowed memory(buffers_);
+    return step_.step(particle, state, weights, target, contacts, counters, memory.memory());
+  }
+
+ private:
+  class Borrowed {
+   public:
+    explicit Borrowed(SimultaneousStepper::Buffers& buffers) : buffers_(buffers) {
+      const std::lock_guard lock(buffers_.mutex);
+      if (buffers_.idle.empty()) {
+        memory_ = std::make_unique<SimultaneousStep::Memory>();
+      } else {
+        memory_ = std::move(buffers_.idle.back());
+        buffers_.idle.pop_back();
+      }
+    }
+    Borrowed(const Borrowed&) = delete;
+    Borrowed& operator=(const Borrowed&) = delete;
+    ~Borrowed() {
+      const std::lock_guard lock(buffers_.mutex);
+      buffers_.idle.push_back(std::move(memory_));
+    }
+    [[nodiscard]] SimultaneousStep::Memory& memory() const { return *memory_; }
+
+   private:
+    SimultaneousStepper::Buffers& buffers_;
+    std::unique_ptr<SimultaneousStep::Memory> memory_;
+  };
+
+  SimultaneousStep step_;
+  SimultaneousStepper::Buffers& buffers_;
+};
+
+}  // namespace
 
 SimultaneousStepper::SimultaneousStepper() = default;
 SimultaneousStepper::~SimultaneousStepper() = default;
@@ -28,51 +79,21 @@ SimultaneousStepper& SimultaneousStepper::operator=(SimultaneousStepper&&) noexc
 
 StepReport SimultaneousStepper::advance(Environment& environment, Particles& particles, std::span<const Vec3> targets,
                                         const ContactCallback& respond, const StepOptions& options) {
-  environment.check_advance(particles, options);
-  const std::size_t count = particles.size();
-  if (count == 0 || targets.size() != count || !environment.awaits_advance(particles))
+  if (particles.size() == 0 || !environment.awaits_advance(particles))
     return environment.advance(particles, targets, respond, options);
   if (!buffers_) buffers_ = std::make_unique<Buffers>();
-  Buffers& b = *buffers_;
-  b.targets.resize(count);
-  for (std::size_t i = 0; i < count; ++i)
-    b.targets[i] = detail::checked_point(targets[i], "the target of particle", i, environment.map().dimension());
-  b.states.assign(particles.states().begin(), particles.states().end());
-  b.weights.resize(count);
-  for (std::size_t i = 0; i < count; ++i) b.weights[i] = particles.held_weights(i);
-  std::optional<WatchedStep> watched;
-  if (environment.replay_hook()) watched.emplace(environment, particles, targets, options, true);
-  const ContactCallback noted = watched ? watched->noted(respond) : ContactCallback{};
-  const std::size_t grain = std::max<std::size_t>(256, chunk_count(count, 256));
-  std::vector<StepReport> reports(chunk_count(count, grain));
-  if (b.memory.size() < reports.size()) b.memory.resize(reports.size());
-  const SimultaneousStep stepper(environment.complex(), options, watched ? noted : respond);
-  const auto take_some = [&](std::size_t begin, std::size_t end) {
-    StepReport& report = reports[begin / grain];
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto particle = static_cast<std::uint32_t>(i);
-      const StepResult result = stepper.step(particle, b.states[i], b.weights[i], b.targets[i], report.contacts,
-                                             report.counters, b.memory[begin / grain]);
-      if (result.held) report.held.push_back({particle, result.invalid_cell});
-      if (result.stopped) report.stopped.push_back({particle, result.unused});
-    }
+  // A list of all walls pays if there are not many more cells than points.
+  constexpr std::size_t cells_for_a_point = 8;
+  const CombinatorialMap& map = environment.map();
+  const bool lists_walls = map.dimension() == 3 && map.cell_count() <= cells_for_a_point * particles.size();
+  if (lists_walls)
+    buffers_->walls.update(environment.complex(), {environment.members_->id, environment.members_->edits},
+                           environment.threads());
+  const auto make = [&](const ContactCallback& answer) {
+    return std::make_unique<SimultaneousDecider>(environment.complex(), options, answer,
+                                                 lists_walls ? &buffers_->walls : nullptr, *buffers_);
   };
-  const auto take = [&] { parallel_for(count, grain, environment.threads(), take_some); };
-  if (watched) {
-    watched->run(take);
-    watched->check(b.states, b.weights);
-  } else {
-    take();
-  }
-  StepReport all;
-  for (StepReport& part : reports) {
-    all.contacts.append(part.contacts);
-    all.held.insert(all.held.end(), part.held.begin(), part.held.end());
-    all.stopped.insert(all.stopped.end(), part.stopped.begin(), part.stopped.end());
-    all.counters += part.counters;
-  }
-  particles = environment.restored(b.states, b.weights);
-  return all;
+  return environment.advance_by(make, particles, targets, respond, options);
 }
 
 }  // namespace dartcast

@@ -78,6 +78,7 @@ Shape::Shape(ShapeKey key) : key_(std::move(key)) {
     point_count_ = static_cast<std::uint16_t>(point_count_ + (face.has_point ? 1 : 0));
   if (key_.has_point) ++point_count_;
   number_darts();
+  number_points_of_faces();
   if (dimension_ == 2) {
     make_triangles();
     return;
@@ -106,6 +107,17 @@ void Shape::number_darts() {
   std::partial_sum(first_dart_at_.begin(), first_dart_at_.end(), first_dart_at_.begin());
   darts_at_.resize(origin_.size());
   for (std::uint16_t d = 0; d < origin_.size(); ++d) darts_at_[first_dart_at_[origin_[d] + 1U]++] = d;
+}
+
+void Shape::number_points_of_faces() {
+  if (point_count_ > 64) return;
+  std::uint16_t point = key_.corner_count;
+  for (const ShapeKey::Face& face : key_.faces) {
+    std::uint64_t mask = 0;
+    for (const std::uint16_t corner : face.corners) mask |= std::uint64_t{1} << corner;
+    if (face.has_point) mask |= std::uint64_t{1} << point++;
+    points_of_face_.push_back(mask);
+  }
 }
 
 void Shape::sew_darts() {
@@ -290,7 +302,8 @@ Stars::Fans Shape::fans() const {
 // Without stars and exits, which walks make on demand: which ranks make them depends on where their particles are.
 std::size_t Shape::bytes() const {
   return sizeof(Shape) + (dart_count() * 5U + key_.corner_count) * sizeof(std::uint16_t) +
-         simplices_.size() * sizeof(ImplicitSimplex) + entries_.size() * sizeof(Across);
+         points_of_face_.size() * sizeof(std::uint64_t) + simplices_.size() * sizeof(ImplicitSimplex) +
+         entries_.size() * sizeof(Across);
 }
 
 }  // namespace dartcast

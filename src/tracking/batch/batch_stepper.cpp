@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include "base/parallel.hpp"
@@ -80,6 +81,43 @@ CacheKind BatchStepper::cache_kind(const ParticleCache& cache) const {
   return cache.stood_still_ ? CacheKind::barycentric : CacheKind::none;
 }
 
+// Also the targets for the batch: those of steps that it must leave as they are are no numbers.
+void BatchStepper::choose(std::span<const ParticleState> states, std::span<const Vec3> targets,
+                          std::span<StepTaker> takers, std::span<Vec3> batch_targets) const {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  decider_->choose(states, targets, takers);
+  for (std::size_t i = 0; i < states.size(); ++i)
+    batch_targets[i] = takers[i] == StepTaker::decider ? Vec3{none, none, none} : targets[i];
+}
+
+// Whether a walk takes the step to its target. If not, all is as before.
+bool BatchStepper::walks_freely(StepState& step, const SteppedParticle& particle) const {
+  const ParticleState state = particle.state;
+  const Weights weights = particle.weights;
+  const Counters counters = particle.counters;
+  const std::size_t contacts = particle.contacts.contacts.size();
+  const std::size_t walls = particle.contacts.walls.size();
+  stepper_.run_to_contact(step, particle);
+  if (!step.waits() && !particle.state.held && particle.state.position == step.target) return true;
+  particle.state = state;
+  particle.weights = weights;
+  particle.counters = counters;
+  particle.contacts.contacts.resize(contacts);
+  particle.contacts.walls.resize(walls);
+  step.stage = StepStage::start;
+  return false;
+}
+
+// A step that the batch has deferred.
+void BatchStepper::take(StepTaker taker, StepState& step, const SteppedParticle& particle) const {
+  if (taker == StepTaker::carried)
+    return rounds_ != nullptr ? stepper_.run_to_contact(step, particle) : stepper_.run(step, particle);
+  if (taker == StepTaker::walk && walks_freely(step, particle)) return;
+  step.impact.reset();
+  step.result = decider_->step(step.particle, particle.state, particle.weights, step.target, particle.contacts,
+                               particle.counters);
+}
+
 void BatchStepper::step_chunk(const BatchScene& scene, const BatchParticles& particles, std::span<const Vec3> targets,
                               std::size_t begin, std::size_t end, ChunkSteps& steps) const {
   StepReport& report = steps.report;
@@ -88,9 +126,20 @@ void BatchStepper::step_chunk(const BatchScene& scene, const BatchParticles& par
   std::array<StepStatus, chunk> status;
   std::vector<StepState> partial;
   partial.reserve(size);
-  const BatchSteps batch{particles.states.subspan(begin, size), std::span(cache.vertices_).subspan(begin, size),
-                         cache.simplices_.from(begin),          targets.subspan(begin, size),
-                         std::span(status).first(size),         partial};
+  targets = targets.subspan(begin, size);
+  const std::span<ParticleState> states = particles.states.subspan(begin, size);
+  std::array<StepTaker, chunk> takers;
+  std::array<Vec3, chunk> batch_targets;
+  if (decider_ != nullptr)
+    choose(states, targets, std::span(takers).first(size), batch_targets);
+  else
+    std::fill_n(takers.begin(), size, StepTaker::carried);
+  const BatchSteps batch{states,
+                         std::span(cache.vertices_).subspan(begin, size),
+                         cache.simplices_.from(begin),
+                         decider_ != nullptr ? std::span<const Vec3>(batch_targets).first(size) : targets,
+                         std::span(status).first(size),
+                         partial};
   if (complex_.map().dimension() == 2)
     step_plane(scene, batch, report.counters);
   else
@@ -100,12 +149,8 @@ void BatchStepper::step_chunk(const BatchScene& scene, const BatchParticles& par
   report.stopped.reserve(partial.size());
   for (std::size_t i = next_deferred(batch.status, 0); i < size; i = next_deferred(batch.status, i + 1)) {
     StepState& step = status[i] == step_untouched ? partial.emplace_back() : partial[status[i]];
-    step.begin(static_cast<std::uint32_t>(begin + i), batch.states[i], batch.targets[i], report.contacts);
-    const SteppedParticle particle{batch.states[i], particles.weights[begin + i], report.contacts, report.counters};
-    if (rounds_ != nullptr)
-      stepper_.run_to_contact(step, particle);
-    else
-      stepper_.run(step, particle);
+    step.begin(static_cast<std::uint32_t>(begin + i), states[i], targets[i], report.contacts);
+    take(takers[i], step, {states[i], particles.weights[begin + i], report.contacts, report.counters});
     add(particles, step, steps);
   }
 }
@@ -123,7 +168,7 @@ BatchScene BatchStepper::scene_of(ParticleCache& cache, std::size_t count) const
 
 StepReport BatchStepper::step_all(const BatchParticles& particles, std::span<const Vec3> targets) const {
   BatchScene scene = scene_of(particles.cache, targets.size());
-  scene.stops = !stepper_.responds() && rounds_ == nullptr;
+  scene.stops = !stepper_.responds() && rounds_ == nullptr && decider_ == nullptr;
   std::vector<ChunkSteps> chunks(chunk_count(targets.size(), chunk));
   parallel_for(targets.size(), chunk, threads_, [&](std::size_t begin, std::size_t end) {
     step_chunk(scene, particles, targets, begin, end, chunks[begin / chunk]);

@@ -14,6 +14,7 @@
 #include "dartcast/threads.hpp"
 #include "tracking/batch/batch.hpp"
 #include "tracking/batch/particle_cache.hpp"
+#include "tracking/batch/step_decider.hpp"
 #include "tracking/batch/travelling_step.hpp"
 #include "tracking/step.hpp"
 
@@ -67,14 +68,16 @@ ChunkSteps joined(std::vector<ChunkSteps> chunks);
 /// gives one by one, to the same bits.
 class BatchStepper {
  public:
-  /// `moved`: as for Stepper. `may_throw`: whether `respond` may. The references must outlive the stepper.
+  /// `moved`: as for Stepper. `may_throw`: whether `respond` may. `decider`: takes the steps that may meet a wall; none:
+  /// Stepper does. The references must outlive the stepper.
   BatchStepper(const CellComplex& complex, bool moved, Threads threads, const StepOptions& options,
-               const ContactCallback& respond, bool may_throw)
+               const ContactCallback& respond, bool may_throw, const StepDecider* decider = nullptr)
       : complex_(complex),
         moved_(moved),
         threads_(threads),
         options_(options),
         may_throw_(may_throw),
+        decider_(decider),
         stepper_(complex, moved, options, respond) {}
   /// With a response in rounds, which is not empty.
   BatchStepper(const CellComplex& complex, bool moved, Threads threads, const StepOptions& options,
@@ -100,6 +103,10 @@ class BatchStepper {
   [[nodiscard]] BatchScene scene_of(ParticleCache& cache, std::size_t count) const;
   void step_chunk(const BatchScene& scene, const BatchParticles& particles, std::span<const Vec3> targets,
                   std::size_t begin, std::size_t end, ChunkSteps& steps) const;
+  void choose(std::span<const ParticleState> states, std::span<const Vec3> targets, std::span<StepTaker> takers,
+              std::span<Vec3> batch_targets) const;
+  void take(StepTaker taker, StepState& step, const SteppedParticle& particle) const;
+  bool walks_freely(StepState& step, const SteppedParticle& particle) const;
   // A step that has come to its end, or to a contact.
   void add(const BatchParticles& particles, const StepState& step, ChunkSteps& steps) const {
     if (step.waits()) return steps.waiting.push_back(step);
@@ -118,6 +125,7 @@ class BatchStepper {
   Threads threads_;
   const StepOptions& options_;
   bool may_throw_;
+  const StepDecider* decider_ = nullptr;
   const RoundCallback* rounds_ = nullptr;  // none: the stepper responds at each contact
   Stepper stepper_;
 };
