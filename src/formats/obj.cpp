@@ -1,6 +1,4 @@
 // Reads Wavefront's .obj line by line.
-#include "formats/surface_formats.hpp"
-
 #include <fmt/format.h>
 
 #include <charconv>
@@ -10,6 +8,7 @@
 
 #include "formats/file_text.hpp"
 #include "formats/parsed_mesh.hpp"
+#include "formats/surface_formats.hpp"
 
 namespace dartcast {
 namespace {

@@ -1,11 +1,10 @@
 // Reads Geomview's .off.
-#include "formats/surface_formats.hpp"
-
 #include <cstdint>
 #include <vector>
 
 #include "formats/file_text.hpp"
 #include "formats/parsed_mesh.hpp"
+#include "formats/surface_formats.hpp"
 #include "mesh/polyhedron.hpp"
 
 namespace dartcast {

@@ -1,6 +1,4 @@
 // Reads Stanford's .ply: the header, then each element in ASCII or binary.
-#include "formats/surface_formats.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,6 +11,7 @@
 #include "formats/file_text.hpp"
 #include "formats/parsed_mesh.hpp"
 #include "formats/raw_number.hpp"
+#include "formats/surface_formats.hpp"
 #include "mesh/polyhedron.hpp"
 
 namespace dartcast {

@@ -1,6 +1,4 @@
 // Reads .stl, ASCII and binary, and joins equal corners.
-#include "formats/surface_formats.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,6 +15,7 @@
 #include "formats/file_text.hpp"
 #include "formats/parsed_mesh.hpp"
 #include "formats/raw_number.hpp"
+#include "formats/surface_formats.hpp"
 
 namespace dartcast {
 namespace {

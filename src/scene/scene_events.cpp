@@ -1,9 +1,8 @@
 // Reads the events of a scene.
-#include "scene/scene_keys.hpp"
-
 #include <limits>
 
 #include "dartcast/error.hpp"
+#include "scene/scene_keys.hpp"
 
 namespace dartcast {
 

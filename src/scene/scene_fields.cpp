@@ -1,11 +1,10 @@
 // Reads the keys of a scene's fields.
-#include "scene/scene_keys.hpp"
-
 #include <fmt/format.h>
 
 #include <string>
 #include <vector>
 
+#include "scene/scene_keys.hpp"
 #include "simulation/series.hpp"
 
 namespace dartcast {

@@ -1,10 +1,10 @@
 // Reads the [environment] table of a scene.
-#include "scene/scene_keys.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <optional>
+
+#include "scene/scene_keys.hpp"
 
 namespace dartcast {
 

@@ -1,12 +1,11 @@
 // Reads the bodies, catheters and solids of a scene.
-#include "scene/scene_keys.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <utility>
 
 #include "dartcast/mesh_files.hpp"
+#include "scene/scene_keys.hpp"
 
 namespace dartcast {
 

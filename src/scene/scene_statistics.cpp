@@ -1,9 +1,8 @@
 // Reads the table [statistics].
-#include "scene/scene_keys.hpp"
-
 #include <fmt/format.h>
 
 #include "dartcast/error.hpp"
+#include "scene/scene_keys.hpp"
 
 namespace dartcast {
 
