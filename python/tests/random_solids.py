@@ -130,7 +130,7 @@ class BodyCalls:
 
     def make(self) -> None:
         self.environment = dc.Environment(dc.generate_box(cells=[3, 3, 3], size=[1.0, 1.0, 1.0], jitter=0.1), threads=2)
-        options = dc.BodiesOptions(dt=1e-2, gravity=[0.0, 0.0, -9.81], collisions=dc.records.BodyCollisionOptions())
+        options = dc.records.BodiesOptions(dt=1e-2, gravity=[0.0, 0.0, -9.81], collisions=dc.records.BodyCollisionOptions())
         self.bodies = dc.Bodies(self.environment, options, {"zmin": dc.Slide()})
         self.saved = self.bodies.checkpoint()
 

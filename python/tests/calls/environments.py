@@ -176,7 +176,7 @@ def of_steps() -> Calls:
 
 
 def of_shared() -> Calls:
-    part = dc.formats.box_part(dc.BoxOptions(cells=[3, 3, 3], size=[1.0, 1.0, 1.0]), 1, 0)
+    part = dc.formats.box_part(dc.formats.BoxOptions(cells=[3, 3, 3], size=[1.0, 1.0, 1.0]), 1, 0)
     env = dc.SharedEnvironment(part, OneRank(), 1)
     particles = dc.SharedParticles(2)
     env.add(particles, np.full((5, 3), 0.4))
@@ -200,7 +200,7 @@ def of_shared() -> Calls:
         "SharedStep": lambda: dc.records.SharedStep(left=1),
         "SharedEnvironment": lambda: dc.SharedEnvironment(part, OneRank(), threads=1),
         "SharedEnvironment: refused": refused(lambda: dc.SharedEnvironment(
-            dc.formats.box_part(dc.BoxOptions(cells=[3, 3, 3], size=[1.0, 1.0, 1.0]), 2, 0), OneRank())),
+            dc.formats.box_part(dc.formats.BoxOptions(cells=[3, 3, 3], size=[1.0, 1.0, 1.0]), 2, 0), OneRank())),
         "SharedEnvironment.whole": lambda: env.whole(int(particles.cells[0])),
         "SharedEnvironment.whole: refused": refused(lambda: env.whole(10**6)),
         "SharedEnvironment.add": add,

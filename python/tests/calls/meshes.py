@@ -92,7 +92,7 @@ def of_selections() -> Calls:
 
 
 def of_generators() -> Calls:
-    options = dc.BoxOptions(cells=[2, 2, 2], size=[1.0, 1.0, 1.0], mixed=True, jitter=0.2)
+    options = dc.formats.BoxOptions(cells=[2, 2, 2], size=[1.0, 1.0, 1.0], mixed=True, jitter=0.2)
     vessel = {"core": 2, "rings": 1, "tissue_layers": 1, "step_length": 1.5e-3}
     return {
         "generate_box": lambda: dc.generate_box(options), "generate_box: by names": lambda: box(),
@@ -163,9 +163,9 @@ def of_parts() -> Calls:
         "partition": lambda: dc.formats.partition(mesh, 4), "partition: refused": refused(lambda: dc.formats.partition(mesh, 0)),
         "mesh_part": lambda: dc.formats.mesh_part(mesh, owners, 3, 2),
         "mesh_part: refused": refused(lambda: dc.formats.mesh_part(mesh, owners[:4], 3, 2)),
-        "has_parts": lambda: dc.formats.has_parts(dc.BoxOptions()),
-        "box_part": lambda: dc.formats.box_part(dc.BoxOptions(cells=[4, 4, 4], size=[1.0, 1.0, 1.0]), 3, 1),
-        "box_part: refused": refused(lambda: dc.formats.box_part(dc.BoxOptions(mixed=True), 1, 0)),
+        "has_parts": lambda: dc.formats.has_parts(dc.formats.BoxOptions()),
+        "box_part": lambda: dc.formats.box_part(dc.formats.BoxOptions(cells=[4, 4, 4], size=[1.0, 1.0, 1.0]), 3, 1),
+        "box_part: refused": refused(lambda: dc.formats.box_part(dc.formats.BoxOptions(mixed=True), 1, 0)),
         "write_mesh_parts": lambda: dc.formats.write_mesh_parts(mesh, 2, path),
         "write_mesh_parts: refused": refused(lambda: dc.formats.write_mesh_parts(mesh, 2, FOLDER / "pieces.vtu")),
         "read_mesh_part": lambda: dc.formats.read_mesh_part(path, 2, 1),

@@ -78,7 +78,7 @@ def of_simulations() -> dict[str, object]:
 
 
 def of_parts() -> dict[str, object]:
-    part = dc.formats.box_part(dc.BoxOptions(cells=[3, 3, 3], size=[1.0, 1.0, 1.0]), 1, 0)
+    part = dc.formats.box_part(dc.formats.BoxOptions(cells=[3, 3, 3], size=[1.0, 1.0, 1.0]), 1, 0)
     environment = dc.SharedEnvironment(part, scenes.OneRank(), 1)
     particles = dc.SharedParticles(2)
     environment.add(particles, np.full((5, 3), 0.4))
