@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "dartcast/vec3.hpp"
-#include "formats/field_series.hpp"
+#include "formats/file_series.hpp"
 
 namespace dartcast {
 

@@ -22,7 +22,7 @@ struct SceneMesh {
   std::vector<Finding> warnings;  ///< as of LoadedScene
 };
 
-/// The mesh's name in messages: that of its file. That of a generated mesh says which option may make it invalid.
+/// The mesh's name in messages: that of its file. The name of a generated mesh says which option may make it invalid.
 std::string mesh_name(const MeshSource& mesh);
 
 /// with_file_name() of a scene's mesh.

@@ -251,6 +251,7 @@ class GridReader {
   void add_field(const VtuArray& array) {
     const bool is_own = std::find(arrays_of_texts.begin(), arrays_of_texts.end(), array.name) != arrays_of_texts.end();
     if (is_own && array.type == "UInt8" && array.components == 1) {
+      check_size(array, count_numbers(array, encoding_), array.tuples);
       grid_.field.push_back({array.name, 1, true, {}, texts_of(array, encoding_)});
       return;
     }
