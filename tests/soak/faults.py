@@ -18,7 +18,7 @@ MINUTES = 10
 FAULTS = {
     # A walk kept the face that it entered a cell by in 3 bits, whatever the cell: steps beside polyhedra of nine faces
     # ended at wrong walls, or never.
-    "face in 3 bits": ("src/tracking/batch/batch_far_walks.inl", ".entry(walk.face, walk.triangle);",
+    "face in 3 bits": ("src/tracking/batch/batch_cell_walks.inl", ".entry(walk.face, walk.triangle);",
                        ".entry(static_cast<std::uint16_t>(walk.face % 8), "
                        "static_cast<std::uint16_t>((walk.triangle + walk.face / 8) % 2));"),
     "batch: a filter without its bound": ("src/tracking/batch/batch_simplex.inl",

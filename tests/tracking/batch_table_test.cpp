@@ -67,8 +67,10 @@ TEST(FilteredBatch, ShapesWithoutATable) {
   std::vector<detail::StepStatus> status(starts.size());
   std::vector<StepState> partial;
   Counters counters;
-  detail::step_batch({&complex, false, false, StepOptions{}}, {taken, vertices, {}, targets, status, partial},
-                     counters);
+  detail::SimplexCache caches;
+  caches.resize(starts.size());
+  detail::step_batch({&complex, false, false, StepOptions{}},
+                     {taken, vertices, caches.from(0), targets, status, partial}, counters);
   const StepOptions options;
   const ContactCallback none;
   const Stepper stepper(complex, false, options, none);

@@ -80,9 +80,9 @@ class BothWays {
     stops_ = stops_at_random_.below(4) != 0;
     std::vector<Vec3> targets;
     for (const ParticleState& s : states_) targets.push_back(target(s));
-    const Filtered portable = filtered(targets, detail::InstructionSet::portable, true, caches_);
-    const Filtered best = filtered(targets, detail::best_instruction_set(), true, caches_);
-    const Filtered uncached = filtered(targets, detail::best_instruction_set(), moves_, {});
+    const Filtered portable = filtered(targets, detail::InstructionSet::portable, caches_);
+    const Filtered best = filtered(targets, detail::best_instruction_set(), caches_);
+    const Filtered uncached = filtered(targets, detail::best_instruction_set(), unknown_caches());
     if (!std::ranges::equal(portable.taken, best.taken)) return "instruction sets leave different steps";
     if (!same_caches(best, portable)) return "instruction sets keep different coordinates";
     if (!same(best.counters, portable.counters)) return "instruction sets count differently";
@@ -225,11 +225,18 @@ class BothWays {
                                   complex_.positions(), detail::vertex_numbers(complex_, state.at()), state.position);
   }
 
-  // With caches or without, those of the step before or new ones.
-  Filtered filtered(std::span<const Vec3> targets, detail::InstructionSet set, bool with_caches,
+  // Where vertices move, new ones.
+  [[nodiscard]] detail::SimplexCache unknown_caches() const {
+    detail::SimplexCache caches;
+    for (std::size_t i = 0; i < particles && !moves_; ++i) caches.push_back(detail::unknown_entry());
+    return caches;
+  }
+
+  // With the caches of the step before, or where there are none, with new ones.
+  Filtered filtered(std::span<const Vec3> targets, detail::InstructionSet set,
                     const detail::SimplexCache& caches) const {
     Filtered f{states_, {}, caches, std::vector<detail::StepStatus>(particles), {}, {}};
-    f.caches.resize(with_caches ? particles : 0);
+    f.caches.resize(particles);
     for (const ParticleState& s : states_) f.vertices.push_back(detail::vertex_numbers(complex_, s.at()));
     detail::step_batch({&complex_, moves_, !caches.empty(), options_, true, stops_},
                        {f.states, f.vertices, f.caches.from(0), targets, f.taken, f.partial}, f.counters, set);

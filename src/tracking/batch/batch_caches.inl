@@ -95,6 +95,15 @@ inline unsigned store_barycentric(const BatchDeterminants& d, const Vec3x4& p, S
   return ask_exact ? lanes_set(proved & exact) : 0;
 }
 
+// The cache of steps in scenes of either kind, of simplices with these determinants of the particles p.
+template <bool moved>
+[[gnu::always_inline]] inline void store_cache(const BatchDeterminants& d, const Vec3x4& p, SimplexCache4& caches) {
+  if constexpr (moved)
+    store_previous_geometry(d, caches);
+  else
+    store_barycentric<false>(d, p, caches);
+}
+
 // Coordinate i of q.
 inline Double4 coordinate_of(const SimplexCache4& caches, unsigned i, const Vec3x4& q) {
   return dot(load_vectors(caches, i), q) + load_doubles(caches.w[i].data());

@@ -1,335 +1,316 @@
 // The first simplex of each step, where most steps end. Part of the batch's kernel (tracking/batch/batch_kernel.inl).
+//
+// Steps are tested block by block, four in a vector, with as few branches as possible. Those that go on are then sorted
+// by how they do.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 
+#include "tracking/batch/batch_slice_starts.inl"
 #include "tracking/batch/batch_steps.inl"
-#include "tracking/carry.hpp"
 
 DARTCAST_BEGIN_KERNEL
 namespace dartcast::detail::DARTCAST_SIMD {
 namespace {
 
-// The first simplex of each step, tested against its corners. Returns the number of exits.
-template <CacheKind kind>
-inline std::size_t Batch<kind>::start() {
-  std::size_t count = 0;
-  for (std::uint32_t i = 0; i < std::min(size_, block); ++i) prefetch(now_, vertices_[i]);
-  for (std::uint32_t first = 0; first < size_; first += block) {
-    const std::uint32_t n = std::min(block, size_ - first);
-    test_block(first, n);
-    const std::uint32_t remaining = carry_remaining(first, end_inside(first, n));
-    for (std::uint32_t l = 0; l < remaining; ++l) {
-      const std::uint32_t i = first + remaining_[l];
-      const std::uint32_t* record = map_.record(states_[i].cell);
-      const FacetSigns4 signs(signs_[remaining_[l]]);
-      if (((far_away_ >> remaining_[l]) & 1U) != 0) {
-        add_far_walk({i, record}, ((farther_away_ >> remaining_[l]) & 1U) != 0);
-      } else if (signs.negative() != 0 && signs.is_known()) {
-        exits_[count++] = exit_candidate(i, signs.negative(), signs.open(), record);
-      } else {
-        WalkCursor cursor = first_cursor(i, states_[i], record, 4, 0);
-        leave_simplex(cursor, vertices_[i], remaining_[l]);
+inline std::uint32_t lowest(std::uint32_t bits) { return static_cast<std::uint32_t>(std::countr_zero(bits)); }
+
+// A block of steps; in masks there is a bit for each.
+struct FirstBlock {
+  std::uint32_t first;
+  std::uint32_t count;
+  std::uint32_t all;
+  std::array<long long, block> signs;  // FacetSigns4
+  std::uint32_t inside;                // targets strictly inside, or on facets but surely on no wall
+
+  void begin(std::uint32_t i, std::uint32_t size) {
+    first = i;
+    count = std::min(block, size - i);
+    all = count == block ? ~std::uint32_t{0} : (std::uint32_t{1} << count) - 1;
+    inside = 0;
+  }
+  [[nodiscard]] FacetSigns4 signs_of(std::uint32_t k) const { return FacetSigns4(signs[k]); }
+  void store(const Mask4& of_four, std::uint32_t k) { *reinterpret_cast<UnalignedMask4*>(&signs[k]) = of_four; }
+};
+
+// Four in a row from i on.
+template <bool moved>
+inline Vec3x4 targets_from(const Batch<moved>& b, std::uint32_t i) {
+  return i + 4 <= b.size ? load_vec3x4(b.targets + i) : b.targets_of(index4_from(i, b.size));
+}
+
+// Ends the steps whose targets are inside: nothing in a simplex is in the way.
+template <bool moved>
+inline void end_inside(Batch<moved>& b, const FirstBlock& at) {
+  for (std::uint32_t in = at.inside; in != 0; in &= in - 1) {
+    const std::uint32_t i = at.first + lowest(in);
+    b.states[i].position = b.targets[i];
+    b.states[i].touching_count = 0;
+  }
+  const auto ended = static_cast<std::uint64_t>(std::popcount(at.inside));
+  b.counters.particle_steps += ended;
+  b.counters.orientation.tests += 4 * ended;
+  b.counters.histogram[4] += ended;
+  b.counters.forecast_kept += ended;
+}
+
+// Defers the steps among those in the mask `some` that are held, or that touch a wall and rest there. Returns a mask of
+// them.
+template <bool moved, class Rests>
+inline std::uint32_t defer_unusual(Batch<moved>& b, const FirstBlock& at, std::uint32_t some, const Rests& rests) {
+  std::uint32_t deferred = 0;
+  std::uint32_t unusual = some & held_or_touching(b.states, b.size, at.first, at.count);
+  for (; unusual != 0; unusual &= unusual - 1) {
+    const std::uint32_t i = at.first + lowest(unusual);
+    if (!b.states[i].held && !rests(i)) continue;
+    b.defer(i);
+    deferred |= unusual & (0U - unusual);
+  }
+  return deferred;
+}
+
+// Where vertices stand still, by barycentric coordinates: only steps that leave the simplex read the scene.
+class FirstSimplexAtRest {
+ public:
+  FirstSimplexAtRest(Batch<false>& batch, bool cells_positive, WalkLists& lists)
+      : b(batch), cells_positive_(cells_positive), out(lists) {}
+
+  void run() {
+    std::uint32_t sorted = 0;
+    for (std::uint32_t first = 0; first < b.size; first += block) {
+      at.begin(first, b.size);
+      test();
+      const std::uint32_t deferred =
+          defer_unusual(b, at, at.all, [&](std::uint32_t i) { return b.states[i].position == b.targets[i]; });
+      at.inside &= ~deferred;
+      on_facets_ &= ~deferred;
+      count_zeros();
+      end_inside(b, at);
+      if (on_facets_ != 0) end_on_facets();
+      const std::uint32_t prefetched = undecided_.count;  // their corners
+      list_remaining(at.all & ~(deferred | at.inside | on_facets_));
+      for (; sorted + 4 <= prefetched; sorted += 4) sort_undecided(sorted);
+    }
+    for (; sorted < undecided_.count; sorted += 4) sort_undecided(sorted);
+  }
+
+ private:
+  // Stores a bit for each facet that a target is behind; none at all where the sign of any coordinate is not proved.
+  void test() {
+    on_facets_ = still_free_ = 0;
+    for (std::uint32_t k = 0; k < at.count; k += 4) {
+      const Vec3x4 q = targets_from(b, at.first + k);
+      const SimplexCache4& caches = b.caches[(at.first + k) / 4];
+      const Double4 c[4] = {coordinate_of(caches, 0, q), coordinate_of(caches, 1, q), coordinate_of(caches, 2, q),
+                            coordinate_of(caches, 3, q)};
+      const Double4 m[4] = {magnitude(c[0]), magnitude(c[1]), magnitude(c[2]), magnitude(c[3])};
+      const Double4 lowest = smaller(smaller(c[0], c[1]), smaller(c[2], c[3]));
+      at.inside |= lanes_set(lowest > coordinate_margin) << k;
+      const Mask4 in_range = (larger(larger(m[0], m[1]), larger(m[2], m[3])) <= max_for_sign) & (lowest > -surely_near);
+      const Mask4 known = (smaller(smaller(m[0], m[1]), smaller(m[2], m[3])) > coordinate_margin) & in_range;
+      const Mask4 negative = facet_bits(c[0] < 0.0, c[1] < 0.0, c[2] < 0.0, c[3] < 0.0);
+      at.store(known & negative, k);
+      if (any_flag(b.flags + at.first + k)) {
+        const Mask4 proved = facet_bits(m[0] > coordinate_margin, m[1] > coordinate_margin, m[2] > coordinate_margin,
+                                        m[3] > coordinate_margin);
+        test_zeros(k, q, in_range, proved, negative);
       }
     }
+    at.inside &= at.all;
+    on_facets_ &= at.all;
   }
-  return count;
-}
 
-// The same by barycentric coordinates, where vertices stand still. Only steps that leave the simplex read the scene.
-template <CacheKind kind>
-inline std::size_t Batch<kind>::start_by_coordinates() {
-  std::size_t count = 0;
-  std::size_t undecided = 0;
-  std::size_t sorted = 0;
-  for (std::uint32_t first = 0; first < size_; first += block) {
-    const std::uint32_t n = std::min(block, size_ - first);
-    test_coordinates(first, n);
-    const std::uint32_t remaining = end_inside(first, n);
-    const std::size_t prefetched = undecided;  // their corners
-    if (on_facets_ != 0) end_on_facets(first);
-    for (std::uint32_t l = 0; l < remaining; ++l) {
-      const std::uint32_t i = first + remaining_[l];
-      const std::uint32_t* record = map_.record(states_[i].cell);
+  // The same where coordinates are exact: zeros are proved, too. A particle with exact coordinates is on no wall. A
+  // target that lies on no other facets than its particle is on no wall either: such a wall would hold the particle.
+  [[gnu::noinline]] void test_zeros(std::uint32_t k, const Vec3x4& q, const Mask4& in_range, const Mask4& proved,
+                                    const Mask4& negative) {
+    CacheFlags* const of_four = b.flags + at.first + k;
+    const Mask4 flags = {of_four[0], of_four[1], of_four[2], of_four[3]};
+    const Mask4 zeros = proved_zeros(b.caches[(at.first + k) / 4], q) & ((flags & splat_bits(exact_flag)) != 0);
+    const Mask4 known = in_range & ((proved | zeros) == splat_bits(15));
+    at.store(known & (negative | (zeros << 4)), k);
+    const Mask4 on_facets = known & (negative == 0) & (zeros != 0);
+    const Mask4 still_free = on_facets & ((zeros & ~flags) == 0);
+    on_facets_ |= lanes_set(on_facets & ~still_free) << k;
+    still_free_ |= lanes_set(still_free) << k;
+    at.inside |= lanes_set(still_free) << k;
+    set_facet_flags(zeros, at.inside >> k, of_four);
+  }
+
+  void count_zeros() {
+    for (std::uint32_t on = at.inside & still_free_; on != 0; on &= on - 1)
+      b.counters.orientation.exact += static_cast<unsigned>(std::popcount(at.signs_of(lowest(on)).zero()));
+  }
+
+  // Ends the steps whose targets lie on facets of the simplex that the particle is in.
+  [[gnu::noinline]] void end_on_facets() {
+    for (std::uint32_t bits = on_facets_; bits != 0; bits &= bits - 1) {
+      const std::uint32_t i = at.first + lowest(bits);
+      const unsigned on = at.signs_of(lowest(bits)).zero();
+      const WalkCursor cursor =
+          first_cursor(i, b.states[i], b.map.record(b.states[i].cell), 4, static_cast<unsigned>(std::popcount(on)));
+      if (b.is_off_walls(cursor, b.vertices[i], on)) b.arrive(cursor, b.vertices[i], on);
+    }
+  }
+
+  // Prefetches what they need next.
+  void list_remaining(std::uint32_t remaining) {
+    std::uint32_t exits = out.exits.count;
+    std::uint32_t undecided = undecided_.count;
+    for (; remaining != 0; remaining &= remaining - 1) {
+      const std::uint32_t i = at.first + lowest(remaining);
+      const std::uint32_t* record = b.map.record(b.states[i].cell);
       __builtin_prefetch(record);
-      const FacetSigns4 signs(signs_[remaining_[l]]);
+      const FacetSigns4 signs = at.signs_of(lowest(remaining));
       const unsigned behind = signs.negative();
-      exits_[count] = exit_candidate(i, behind, signs.zero(), record);
-      undecided_[undecided] = {i, record};
-      if (!std::has_single_bit(behind)) prefetch(now_, vertices_[i]);
-      const std::size_t proved = behind != 0 ? 1 : 0;
-      count += proved;
+      if (!std::has_single_bit(behind)) prefetch_corners(b.now, b.vertices[i]);
+      // Written to both lists: no branch could predict which.
+      out.exits.at[exits] = exit_candidate(i, behind, signs.zero(), record);
+      undecided_.at[undecided] = {i, record};
+      const std::uint32_t proved = behind != 0 ? 1 : 0;
+      exits += proved;
       undecided += 1 - proved;
     }
-    for (; sorted + 4 <= prefetched; sorted += 4) sort_undecided(sorted, undecided);
+    out.exits.count = exits;
+    undecided_.count = undecided;
   }
-  for (; sorted < undecided; sorted += 4) sort_undecided(sorted, undecided);
-  return count;
-}
 
-// Four steps of `count` that coordinates do not decide, from number k on: walks to far targets, and others in rounds.
-template <CacheKind kind>
-inline void Batch<kind>::sort_undecided(std::size_t k, std::size_t count) {
-  const std::size_t last = count - 1;
-  const auto particle = [&](std::size_t l) { return undecided_[std::min(k + l, last)].particle; };
-  const Index4 i = {{particle(0), particle(1), particle(2), particle(3)}};
-  const BatchDeterminants determinants(simplices_of(now_, i), targets_of(i));
-  const unsigned far = lanes_set(determinants.far_away());
-  const unsigned farther = lanes_set(determinants.far_away(farther_coordinate));
-  for (std::size_t l = 0; l < std::min<std::size_t>(4, count - k); ++l) {
-    const WalkStart& d = undecided_[k + l];
-    if (((far >> l) & 1U) != 0)
-      add_far_walk(d, ((farther >> l) & 1U) != 0);
-    else
-      add_to_rounds(first_cursor(d.particle, states_[d.particle], d.record, 1, 0));  // walk_on() counts three more
+  // Four steps that coordinates do not decide, from number k on: walks to far targets, and others in rounds.
+  void sort_undecided(std::uint32_t k) {
+    const Index4 i = undecided_.particles(k);
+    const BatchDeterminants determinants(b.simplices_of(b.now, i), b.targets_of(i));
+    const unsigned far = lanes_set(determinants.far_away());
+    const unsigned farther = cells_positive_ ? lanes_set(determinants.far_away(farther_coordinate)) : 0;
+    for (std::uint32_t l = 0; l < std::min(4U, undecided_.count - k); ++l) {
+      const WalkStart& walk = undecided_.at[k + l];
+      if (((farther >> l) & 1U) != 0)
+        out.farther.add(walk);
+      else if (((far >> l) & 1U) != 0)
+        out.far.add(walk);
+      else
+        out.rounds.add(first_cursor(walk.particle, b.states[walk.particle], walk.record, 1, 0));  // they count 3 more
+    }
   }
-}
 
-template <CacheKind kind>
-inline void Batch<kind>::add_far_walk(const WalkStart& walk, bool farther) {
-  if (!moved && farther && cells_positive_)
-    farther_walks_[farther_count_++] = walk;
-  else
-    far_walks_[far_count_++] = walk;
-}
+  Batch<false>& b;
+  bool cells_positive_;
+  WalkLists& out;
+  FirstBlock at;
+  std::uint32_t on_facets_;   // targets there, maybe on walls
+  std::uint32_t still_free_;  // there, on no wall
+  BatchList<WalkStart> undecided_;
+};
 
-template <CacheKind kind>
-inline void Batch<kind>::test_block(std::uint32_t first, std::uint32_t n) {
-  inside_ = 0;
-  far_away_ = 0;
-  farther_away_ = 0;
-  one_part_ = 0;
-  carried_inside_ = 0;
-  arrivals_ = 0;
-  for (std::uint32_t k = 0; k < n; k += 4) {
-    prefetch_ahead(first + k);
-    const Index4 i = index4_from(first + k, size_);
-    const Corners4 now = simplices_of(now_, i);
-    const Vec3x4 q = targets_from(first + k);
-    const BatchDeterminants d(now, q);
-    const Mask4 signs = d.signs(now, q);
-    store_signs(signs, k);
-    inside_ |= lanes_set(signs == splat_bits(FacetSigns4::valid)) << k;
-    far_away_ |= lanes_set(d.far_away()) << k;
-    if constexpr (!moved) farther_away_ |= lanes_set(d.far_away(farther_coordinate)) << k;
-    if constexpr (moved) {
-      SimplexCache4& previous_caches = caches_[i.at[0] / 4];
-      const OnePart one(previous_caches, d.relative, places_of(i), q, options_.tolerance);
+// Where vertices move, by determinants.
+class FirstSimplexMoved {
+ public:
+  FirstSimplexMoved(Batch<true>& batch, const StepOptions& options, WalkLists& lists)
+      : b(batch), tolerance_(options.tolerance), splitting_(batch, options, lists.apart), out(lists) {}
+
+  void run() {
+    for (std::uint32_t i = 0; i < std::min(b.size, block); ++i) prefetch_corners(b.now, b.vertices[i]);
+    for (std::uint32_t first = 0; first < b.size; first += block) {
+      at.begin(first, b.size);
+      test();
+      std::uint32_t gone = splitting_.split(first, at.all & ~one_part_);
+      gone |= defer_unusual(b, at, at.all & ~gone, [&](std::uint32_t i) { return rests(i); });
+      at.inside &= at.all & ~gone;
+      end_inside(b, at);
+      carry(at.all & ~(gone | at.inside));
+    }
+  }
+
+ private:
+  void test() {
+    far_away_ = one_part_ = carried_inside_ = 0;
+    for (std::uint32_t k = 0; k < at.count; k += 4) {
+      for (std::uint32_t i = at.first + block + k; i < std::min(at.first + block + k + 4, b.size); ++i)
+        prefetch_corners(b.now, b.vertices[i]);
+      const Index4 i = index4_from(at.first + k, b.size);
+      const Corners4 now = b.simplices_of(b.now, i);
+      const Vec3x4 q = targets_from(b, at.first + k);
+      const BatchDeterminants d(now, q);
+      const Mask4 signs = d.signs(now, q);
+      at.store(signs, k);
+      at.inside |= lanes_set(signs == splat_bits(FacetSigns4::valid)) << k;
+      far_away_ |= lanes_set(d.far_away()) << k;
+      SimplexCache4& old = b.caches[(at.first + k) / 4];
+      const OnePart one(old, d.relative, b.places_of(i), q, tolerance_);
       Mask4 proved = one.by_size();
       if (lanes_set(proved) != 15U) proved |= one.by_shape();
       one_part_ |= lanes_set(proved) << k;
-      carried_inside_ |= lanes_set(surely_carried_inside(previous_caches, d, q)) << k;
-      previous_determinants_[i.at[0] / 4] = previous_caches.w;
-      store_previous_geometry(d, previous_caches);  // steps that go on, or are deferred, overwrite it later
+      carried_inside_ |= lanes_set(surely_carried_inside(old, d, q)) << k;
+      b.old_determinants[(at.first + k) / 4] = old.w;
+      store_previous_geometry(d, old);  // steps that go on, or are deferred, overwrite it later
     }
   }
-}
 
-// Stores a bit for each facet that a target is behind; none at all where the sign of any coordinate is not proved.
-template <CacheKind kind>
-inline void Batch<kind>::test_coordinates(std::uint32_t first, std::uint32_t n) {
-  inside_ = 0;
-  on_facets_ = 0;
-  still_free_ = 0;
-  for (std::uint32_t k = 0; k < n; k += 4) {
-    const Vec3x4 q = targets_from(first + k);
-    const SimplexCache4& caches = caches_[(first + k) / 4];
-    const Double4 c[4] = {coordinate_of(caches, 0, q), coordinate_of(caches, 1, q), coordinate_of(caches, 2, q),
-                          coordinate_of(caches, 3, q)};
-    const Double4 m[4] = {magnitude(c[0]), magnitude(c[1]), magnitude(c[2]), magnitude(c[3])};
-    const Double4 lowest = smaller(smaller(c[0], c[1]), smaller(c[2], c[3]));
-    inside_ |= lanes_set(lowest > coordinate_margin) << k;
-    const Mask4 in_range = (larger(larger(m[0], m[1]), larger(m[2], m[3])) <= max_for_sign) & (lowest > -surely_near);
-    const Mask4 known = (smaller(smaller(m[0], m[1]), smaller(m[2], m[3])) > coordinate_margin) & in_range;
-    const Mask4 negative = facet_bits(c[0] < 0.0, c[1] < 0.0, c[2] < 0.0, c[3] < 0.0);
-    store_signs(known & negative, k);
-    if (any_flag(flags_ + first + k)) {
-      const Mask4 proved = facet_bits(m[0] > coordinate_margin, m[1] > coordinate_margin, m[2] > coordinate_margin,
-                                      m[3] > coordinate_margin);
-      test_zeros(first, k, q, in_range, proved, negative);
+  // Whether a particle that touches a wall, and has no far target, stays where the mesh carries it: then it keeps
+  // touching the wall. So, too, where the filter does not prove that it is carried to the inside.
+  [[nodiscard]] bool rests(std::uint32_t i) const {
+    if (is_far(i)) return false;
+    const Vec3 x = b.start_of(i);
+    return !Determinants(corners_of(b.now, b.vertices[i]), x).all_proved_positive() || x == b.targets[i];
+  }
+  [[nodiscard]] bool is_far(std::uint32_t i) const { return ((far_away_ >> (i - at.first)) & 1U) != 0; }
+
+  // Prefetches the cells of the remaining steps, then sorts these, four at a time.
+  void carry(std::uint32_t remaining) {
+    std::array<std::uint32_t, block> left;
+    std::uint32_t count = 0;
+    for (; remaining != 0; remaining &= remaining - 1) {
+      left[count] = at.first + lowest(remaining);
+      __builtin_prefetch(b.map.record(b.states[left[count++]].cell));
+    }
+    for (std::uint32_t l = 0; l < count; l += 4) {
+      const Index4 k = index4_from(l, count);
+      carry_four({{left[k.at[0]], left[k.at[1]], left[k.at[2]], left[k.at[3]]}}, std::min(count - l, 4U));
     }
   }
-}
 
-// The same where coordinates are exact: zeros are proved, too. A particle with exact coordinates is on no wall. A
-// target that lies on no other facets than its particle is on no wall either: such a wall would hold the particle.
-template <CacheKind kind>
-void Batch<kind>::test_zeros(std::uint32_t first, std::uint32_t k, const Vec3x4& q, const Mask4& in_range,
-                             const Mask4& proved, const Mask4& negative) {
-  const CacheFlags* of_four = flags_ + first + k;
-  const Mask4 flags = {of_four[0], of_four[1], of_four[2], of_four[3]};
-  const Mask4 zeros = proved_zeros(caches_[(first + k) / 4], q) & ((flags & splat_bits(exact_flag)) != 0);
-  const Mask4 known = in_range & ((proved | zeros) == splat_bits(15));
-  store_signs(known & (negative | (zeros << 4)), k);
-  const Mask4 on_facets = known & (negative == 0) & (zeros != 0);
-  const Mask4 still_free = on_facets & ((zeros & ~flags) == 0);
-  on_facets_ |= lanes_set(on_facets & ~still_free) << k;
-  still_free_ |= lanes_set(still_free) << k;
-  inside_ |= lanes_set(still_free) << k;
-  set_facet_flags(zeros, inside_ >> k, flags_ + first + k);
-}
+  // Four steps whose starts the mesh carries. Where these are not proved to lie inside, the others walk apart if their targets
+  // are far, and are deferred elsewhere.
+  void carry_four(const Index4& i, std::uint32_t count) {
+    const Corners4 now = b.simplices_of(b.now, i);
+    const unsigned left_behind = lanes_set(BatchDeterminants(now, b.places_of(i)).any_negative());
+    unsigned inside = 0;
+    for (std::uint32_t l = 0; l < 4; ++l) inside |= ((carried_inside_ >> (i.at[l] - at.first)) & 1U) << l;
+    if (inside != 15U) inside |= carried_inside(b.old_determinants.data(), i, now, b.targets_of(i));
+    for (std::uint32_t l = 0; l < count; ++l) {
+      const std::uint32_t particle = i.at[l];
+      if (((inside >> l) & 1U) == 0) {
+        if (!is_far(particle) || !splitting_.add(particle, 1)) b.defer(particle);
+        continue;
+      }
+      b.left_behind[particle] = ((left_behind >> l) & 1U) != 0;
+      go_on(particle);
+    }
+  }
 
-// Ends the steps whose targets lie strictly inside: nothing in a simplex is in the way. Lists the others in remaining_,
-// and returns their number.
-template <CacheKind kind>
-inline std::uint32_t Batch<kind>::end_inside(std::uint32_t first, std::uint32_t n) {
-  const std::uint32_t all = n == block ? ~std::uint32_t{0} : (std::uint32_t{1} << n) - 1;
-  std::uint32_t deferred = 0;
-  if constexpr (moved) deferred = split_steps(first, all & ~one_part_);
-  std::uint32_t unusual = all & ~deferred & held_or_touching(states_, size_, first, n);
-  for (; unusual != 0; unusual &= unusual - 1) {
-    const auto k = static_cast<std::uint32_t>(std::countr_zero(unusual));
-    if (defer_unusual(first + k, k)) deferred |= std::uint32_t{1} << k;
-  }
-  inside_ &= all & ~deferred;
-  on_facets_ &= all & ~deferred;
-  if constexpr (kind == CacheKind::barycentric) {
-    for (std::uint32_t on = inside_ & still_free_; on != 0; on &= on - 1)
-      counters_.orientation.exact += static_cast<unsigned>(
-          std::popcount(FacetSigns4(signs_[static_cast<std::size_t>(std::countr_zero(on))]).zero()));
-  }
-  for (std::uint32_t in = inside_; in != 0; in &= in - 1) {
-    const std::uint32_t i = first + static_cast<std::uint32_t>(std::countr_zero(in));
-    states_[i].position = targets_[i];
-    states_[i].touching_count = 0;
-  }
-  const auto ended = static_cast<std::uint64_t>(std::popcount(inside_));
-  counters_.particle_steps += ended;
-  counters_.orientation.tests += 4 * ended;
-  counters_.histogram[4] += ended;
-  counters_.forecast_kept += ended;
-  std::uint32_t remaining = 0;
-  for (std::uint32_t on = all & ~deferred & ~inside_ & ~on_facets_; on != 0; on &= on - 1)
-    remaining_[remaining++] = static_cast<std::uint32_t>(std::countr_zero(on));
-  return remaining;
-}
-
-// Ends the steps whose targets lie on facets of the simplex that the particle is in.
-template <CacheKind kind>
-void Batch<kind>::end_on_facets(std::uint32_t first) {
-  for (std::uint32_t bits = on_facets_; bits != 0; bits &= bits - 1) {
-    const auto k = static_cast<std::uint32_t>(std::countr_zero(bits));
-    const std::uint32_t i = first + k;
-    const unsigned on = FacetSigns4(signs_[k]).zero();
+  void go_on(std::uint32_t i) {
+    const std::uint32_t* record = b.map.record(b.states[i].cell);
+    const FacetSigns4 signs = at.signs_of(i - at.first);
+    if (is_far(i)) return out.far.add({i, record});
+    if (!signs.is_known()) return static_cast<void>(b.defer(i));
+    if (signs.negative() != 0) return out.exits.add(exit_candidate(i, signs.negative(), signs.open(), record));
     const WalkCursor cursor =
-        first_cursor(i, states_[i], map_.record(states_[i].cell), 4, static_cast<unsigned>(std::popcount(on)));
-    if (const auto wall = find_touched_wall(map_, cursor, vertices_[i], on)) {
-      end_on_wall(cursor, on, *wall);
-    } else {
-      end(cursor);
-      flags_[i] = static_cast<CacheFlags>(exact_flag | on);
-    }
+        first_cursor(i, b.states[i], record, 4, static_cast<unsigned>(std::popcount(signs.open())));
+    if (signs.zero() == 0 || b.is_off_walls(cursor, b.vertices[i], signs.zero())) b.end(cursor);
   }
-}
 
-// Defers a step in one part that is held, or rests on a wall. k: its place in the block. Returns false where the step is
-// neither.
-template <CacheKind kind>
-inline bool Batch<kind>::defer_unusual(std::uint32_t i, std::uint32_t k) {
-  const ParticleState& s = states_[i];
-  const bool far = moved && ((far_away_ >> k) & 1U) != 0;
-  if (!s.held && (s.touching_count == 0 || far || !rests(i))) return false;
-  defer(i);
-  return true;
-}
-
-// Where the mesh carries a particle that had these determinants, in the simplex where its step starts.
-template <CacheKind kind>
-inline Vec3 Batch<kind>::carried_position(std::uint32_t i, const Weights& w) const {
-  return flushed(combine(corners_of(now_, vertices_[i]), shares_of(w)));
-}
-
-// The same; nothing where the filter does not prove that it lies inside the moved simplex, or where it is unknown.
-template <CacheKind kind>
-inline std::optional<Vec3> Batch<kind>::carried_position_inside(std::uint32_t i) const {
-  const Vec3 x = carried_position(i, determinants_of(previous_determinants_.data(), i));
-  return Determinants(corners_of(now_, vertices_[i]), x).all_proved_positive() ? std::optional(x) : std::nullopt;
-}
-
-// Whether a particle that touches a wall stays where it is: then it keeps touching the wall.
-template <CacheKind kind>
-inline bool Batch<kind>::rests(std::uint32_t i) const {
-  if constexpr (!moved) return states_[i].position == targets_[i];
-  const auto carried = carried_position_inside(i);
-  return !carried || *carried == targets_[i];
-}
-
-// Prefetches the cells of the remaining steps, and keeps those in remaining_ that go on. Returns their number.
-template <CacheKind kind>
-inline std::uint32_t Batch<kind>::carry_remaining(std::uint32_t first, std::uint32_t remaining) {
-  for (std::uint32_t l = 0; l < remaining; ++l) {
-    __builtin_prefetch(map_.record(states_[first + remaining_[l]].cell));
-  }
-  if constexpr (!moved) return remaining;
-  std::uint32_t going_on = 0;
-  for (std::uint32_t l = 0; l < remaining; l += 4) {
-    const std::uint32_t last = remaining - 1;
-    const Index4 i = {{first + remaining_[l], first + remaining_[std::min(l + 1, last)],
-                       first + remaining_[std::min(l + 2, last)], first + remaining_[std::min(l + 3, last)]}};
-    going_on = carry_four(i, std::min(remaining - l, 4U), going_on, first);
-  }
-  return going_on;
-}
-
-// Appends to the first `going_on` entries of remaining_ those of four walks that go on: their starts, carried with the
-// mesh, are proved to lie inside. The others walk apart where their targets are far, and are deferred elsewhere.
-template <CacheKind kind>
-inline std::uint32_t Batch<kind>::carry_four(const Index4& i, std::uint32_t count, std::uint32_t going_on,
-                                             std::uint32_t first) {
-  const Corners4 now = simplices_of(now_, i);
-  const unsigned behind = lanes_set(BatchDeterminants(now, places_of(i)).any_negative());
-  unsigned on = 0;
-  for (std::uint32_t l = 0; l < 4; ++l) on |= ((carried_inside_ >> (i.at[l] - first)) & 1U) << l;
-  if (on != 15U) on |= carried_inside(previous_determinants_.data(), i, now, targets_of(i));
-  for (std::uint32_t l = 0; l < count; ++l) {
-    const std::uint32_t particle = i.at[l];
-    if (((on >> l) & 1U) == 0) {
-      if (((far_away_ >> (particle - first)) & 1U) == 0 || !add_slice_walk(particle, 1)) defer(particle);
-      continue;
-    }
-    left_behind_[particle] = ((behind >> l) & 1U) != 0;
-    remaining_[going_on++] = particle - first;
-  }
-  return going_on;
-}
-
-// Takes each walk out of its first simplex. Those that leave their cell come last, in a row: no branch could predict
-// which they are. Returns the number of all walks in rounds.
-template <CacheKind kind>
-inline std::size_t Batch<kind>::take_exits(std::size_t exits) {
-  std::size_t next = in_rounds_;
-  std::size_t out_of_cell = 0;
-  for (std::size_t k = 0; k < exits; ++k) {
-    const auto [i, behind, open, record] = exits_[k];
-    const ParticleState& s = states_[i];
-    std::uint32_t tests = 4;
-    std::uint32_t exact = open;
-    auto facet = static_cast<unsigned>(std::countr_zero(behind));
-    if (!std::has_single_bit(behind)) {
-      WalkCursor cursor = first_cursor(i, s, record, tests, exact);
-      facet = first_exit(cursor, vertices_[i], behind);
-      tests = cursor.tests;
-      exact = cursor.exact;
-    }
-    // From registers: a record that was just written in parts could not be loaded as a whole yet.
-    const Across across = map_.view(s.cell, record).shape().simplices()[s.simplex].across[facet];
-    walks_[next] = {i, s.cell.value, across.index, across.place, tests, exact, entered, record};
-    cell_exits_[out_of_cell] = {i, across, facet, tests, exact, record};
-    const std::size_t leaves = across.index / Across::outer_bit;
-    next += 1 - leaves;
-    out_of_cell += leaves;
-  }
-  for (std::size_t k = 0; k < out_of_cell; ++k) {
-    const auto& [i, across, facet, tests, exact, record] = cell_exits_[k];
-    walks_[next] = first_cursor(i, states_[i], record, tests, exact);
-    if (pass_face(walks_[next], vertices_[i], facet, across)) ++next;
-  }
-  return next;
-}
+  Batch<true>& b;
+  double tolerance_;
+  Splitting splitting_;
+  WalkLists& out;
+  FirstBlock at;
+  std::uint32_t far_away_;        // targets some simplices away
+  std::uint32_t one_part_;        // steps that need no splitting
+  std::uint32_t carried_inside_;  // starts that the mesh carries to strictly inside
+};
 
 }  // namespace
 }  // namespace dartcast::detail::DARTCAST_SIMD

@@ -7,6 +7,7 @@
 
 #include "base/double4.inl"
 #include "tracking/batch/batch_caches.inl"
+#include "tracking/batch/batch_records.inl"
 #include "tracking/batch/batch_simplex.inl"
 #include "tracking/contact_geometry.hpp"
 #include "tracking/step_state.hpp"
@@ -33,17 +34,7 @@ struct BoundedProducts {
   }
 };
 
-// A walk that has come to a wall's facet; its target is beyond.
-struct AtWall {
-  std::uint32_t particle;
-  std::uint16_t partial;  // its number
-  std::uint16_t facet;
-  VertexNumbers corners;  // of the simplex at the wall
-
-  [[nodiscard]] std::uint32_t corner(unsigned i) const { return corners[facet_corners[facet][i]]; }
-};
-
-// Four of these.
+// Four walks at walls.
 struct AtWalls {
   const AtWall* walls[4];
   const StepState* steps;

@@ -1,24 +1,7 @@
-// The kernel of the batch (tracking/batch/batch.hpp). Its phases, in order (Batch::run() in batch_steps.inl):
-//
-// 1. Caches that do not fit the scene are made or emptied (batch_remember.inl).
-// 2. First simplex (batch_first_simplex.inl). Four targets are tested at a time: against the corners, or by
-//    barycentric coordinates. Targets that are proved inside end the step. Steps that are held, or must be split and have
-//    a near target, are deferred to Stepper (batch_split_steps.inl). The others are carried along with the mesh. Those
-//    with near targets leave by their exit facet.
-// 3. Far walks (batch_far_walks.inl) go along their lines. Where a sign is not proved they go on in rounds. The farthest
-//    pass whole hexahedra (batch_cell_walks.inl). Those of steps that are split end with the first part
-//    (batch_slice_walks.inl).
-// 4. Rounds (batch_walk.inl). In each, every walk finds its next simplex, is tested there, and arrives, goes on, stops
-//    at a wall, or is deferred where a sign is not proved. Arrivals leave a cache entry (batch_remember.inl).
-// 5. Impacts (batch_walls.inl). Four walks that end at walls at a time: the places where they meet them, where doubles
-//    prove these. Where nothing responds, the mesh carries particles along from walls to the end of steps that are split.
-//    Stepper resumes from there.
-// 6. Exact coordinates of those that arrived on facets (batch_remember.inl).
-//
-// Below these: batch_simplex.inl (determinants and signs), batch_line_walks.inl, batch_cell_lanes.inl, batch_caches.inl,
-// batch_impacts.inl, and batch_records.inl (scratch records).
+// The kernel of the batch (tracking/batch/batch.hpp): its stages, in order.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -30,18 +13,48 @@
 #include "tracking/batch/batch_first_simplex.inl"
 #include "tracking/batch/batch_remember.inl"
 #include "tracking/batch/batch_slice_walks.inl"
-#include "tracking/batch/batch_split_steps.inl"
 #include "tracking/batch/batch_walk.inl"
 #include "tracking/batch/batch_walls.inl"
-#include "tracking/batch/simplex_cache.hpp"
 
 DARTCAST_BEGIN_KERNEL
 namespace dartcast::detail::DARTCAST_SIMD {
+namespace {
+
+// Walks to far targets.
+template <bool moved>
+[[gnu::noinline]] void walk_lines(Batch<moved>& b, WalkLists& walks) {
+  LineLanes lanes(b.map, b.now);
+  FarWalks<moved> far(b, lanes, walks.far, walks.rounds);
+  LineLoop<moved, FarWalks<moved>>(b, lanes, far).run();
+  if constexpr (moved) {
+    SliceWalks apart(b, lanes, walks.apart);
+    LineLoop<moved, SliceWalks>(b, lanes, apart).run();
+  } else if (walks.farther.count != 0) {
+    WalksToCells(b, lanes, walks.farther, walks.rounds).run();
+  }
+}
+
+template <bool moved>
+void run(const BatchScene& scene, const BatchSteps& steps, Counters& counters) {
+  Batch<moved> b(scene, steps, counters);
+  WalkLists walks;
+  prepare_caches(b, scene);
+  std::fill_n(b.status, b.size, step_complete);
+  if constexpr (moved)
+    FirstSimplexMoved(b, scene.options, walks).run();
+  else
+    FirstSimplexAtRest(b, are_known_positive(*scene.complex), walks).run();
+  if ((walks.far.count | walks.farther.count | walks.apart.count) != 0) walk_lines(b, walks);
+  leave_first_simplices(b, walks.exits, walks.rounds);
+  Rounds<moved>(b, walks.rounds).run();
+  compute_impacts(b, scene.stops);
+  cache_arrivals(b);
+}
+
+}  // namespace
 
 void step(const BatchScene& scene, const BatchSteps& steps, Counters& counters) {
-  if (scene.moved) return Batch<CacheKind::previous_geometry>(scene, steps, counters).run();
-  if (steps.caches.empty()) return Batch<CacheKind::none>(scene, steps, counters).run();
-  Batch<CacheKind::barycentric>(scene, steps, counters).run();
+  scene.moved ? run<true>(scene, steps, counters) : run<false>(scene, steps, counters);
 }
 
 // Whether every number is 0 or between the two magnitudes.

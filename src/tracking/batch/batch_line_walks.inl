@@ -195,24 +195,6 @@ inline constexpr auto line_turns = [] {
 }();
 inline constexpr std::array<std::uint8_t, 8> modulo_3 = {0, 1, 2, 0, 1, 2, 0, 1};
 
-// Walks that go on behind triangles, where they are known to be.
-struct LineResumptions4 {
-  Lines4 line;
-  Vec3x4 corner[3];  // of the triangles, as in LineWalks4
-  Double4 edge_side[3];
-
-  LineResumptions4() = default;
-  LineResumptions4(const Vec3x4& p, const Vec3x4& q, const Double4& reach, const Vec3x4 (&triangle)[3]) : line(p, q) {
-    line.reach_to(reach);
-    for (unsigned i = 0; i < 3; ++i) corner[i] = line.project(triangle[i]);
-    for (unsigned i = 0; i < 3; ++i) edge_side[i] = side(corner[(i + 1) % 3], corner[(i + 2) % 3]);
-  }
-};
-
-// How walks go along lines: to the step's target; the same, but on to pass cells from the next hexahedron on; or apart
-// (batch_slice_walks.inl).
-enum class LineKind : std::uint8_t { to_target, to_cells, apart };
-
 // Four walks. Slot i of a triangle: its corner i, and the side of the edge from the next corner to the one after.
 struct LineWalks4 {
   Lines4 line;
@@ -274,14 +256,6 @@ struct LineWalks4 {
       edge_side[i][to] = e.direction * starts.edge_side[e.number][from];
     }
   }
-  // Lane `to` is the walk of lane `from` of those that go on, in the simplex behind its triangle.
-  void go_on(unsigned to, const LineResumptions4& walks, unsigned from) {
-    line.take(to, walks.line, from);
-    for (unsigned i = 0; i < 3; ++i) {
-      take(corner[i], to, walks.corner[i], from);
-      edge_side[i][to] = walks.edge_side[i][from];
-    }
-  }
   // Whether it is proved that the line passes inside of the triangle.
   [[nodiscard]] bool is_inside(unsigned lane) const {
     const double bound = line.side_bound[lane];
@@ -305,6 +279,20 @@ struct LinePlace {
   std::uint32_t row;
   std::uint32_t turned_facet;  // 4 times the row's facet, and its turn
   std::uint32_t exit_facet;
+
+  // In the simplex that has this row (topology/exit_table.hpp): the walk enters it by the row's facet.
+  void begin(std::uint32_t walker, std::uint32_t cell_of_row, const std::uint32_t* cell_record,
+             std::uint32_t row_entered, std::uint32_t passed_before, std::uint32_t tests_before) {
+    record = cell_record;
+    particle = walker;
+    cell = cell_of_row;
+    passed = passed_before;
+    tests = tests_before;
+    face = 0;
+    place = row_entered;
+    turn = 0;
+  }
+  [[nodiscard]] std::uint32_t all_tests() const { return tests + 3 * passed; }
 };
 
 // Records of the standard types of cells, by pools.

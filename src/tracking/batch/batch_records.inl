@@ -15,6 +15,7 @@
 #include "dartcast/combinatorial_map.hpp"
 #include "dartcast/particle_state.hpp"
 #include "dartcast/step.hpp"
+#include "tracking/batch/batch.hpp"
 #include "tracking/batch/batch_caches.inl"
 #include "tracking/batch/batch_simplex.inl"
 #include "tracking/star.hpp"
@@ -22,6 +23,20 @@
 DARTCAST_BEGIN_KERNEL
 namespace dartcast::detail::DARTCAST_SIMD {
 namespace {
+
+// Room for one entry of each particle.
+template <class T>
+struct BatchList {
+  std::array<T, max_batch> at;
+  std::uint32_t count = 0;
+
+  void add(const T& entry) { at[count++] = entry; }
+  // Those of four entries from number k on; at the end the last one again in the remaining lanes.
+  [[nodiscard]] Index4 particles(std::uint32_t k) const {
+    const Index4 i = index4_from(k, count);
+    return {{at[i.at[0]].particle, at[i.at[1]].particle, at[i.at[2]].particle, at[i.at[3]].particle}};
+  }
+};
 
 // A simplex that a walk has come to. Before it is entered: `face` and `place` are those of ExitTable::entry().
 struct WalkCursor {
@@ -86,13 +101,23 @@ struct CellExit {
   std::uint32_t exact;
   const std::uint32_t* record;
 };
+// A step that has ended at its target.
 struct Arrival {
+  std::uint32_t particle;
+  std::uint32_t on;  // bits of the facets of the simplex that the target is proved to lie on
+};
+struct PlacedArrival {
   std::uint32_t particle;
   std::uint32_t place;  // in the block
 };
-struct FacetArrival {
+// A walk that has come to a wall's facet; its target is beyond.
+struct AtWall {
   std::uint32_t particle;
-  CacheFlags on;
+  std::uint16_t partial;  // its number
+  std::uint16_t facet;
+  VertexNumbers corners;  // of the simplex at the wall
+
+  [[nodiscard]] std::uint32_t corner(unsigned i) const { return corners[facet_corners[facet][i]]; }
 };
 
 inline void count_step(const WalkCursor& cursor, Counters& counters) {
@@ -104,16 +129,17 @@ inline void count_step(const WalkCursor& cursor, Counters& counters) {
 }
 
 // Inlined: the compiler would drop a call that only prefetches.
-[[gnu::always_inline]] inline void prefetch(const Vec3* positions, const VertexNumbers& v) {
+[[gnu::always_inline]] inline void prefetch_corners(const Vec3* positions, const VertexNumbers& v) {
   for (unsigned i = 0; i < 4; ++i) {
     __builtin_prefetch(positions + v[i]);
     __builtin_prefetch(&(positions + v[i])->z);
   }
 }
 
-inline Index4 particles_of(const FacetArrival* arrivals, const Index4& i) {
-  return {
-      {arrivals[i.at[0]].particle, arrivals[i.at[1]].particle, arrivals[i.at[2]].particle, arrivals[i.at[3]].particle}};
+[[gnu::always_inline]] inline VertexNumbers corners_of_simplex(const CellView& cell, unsigned index) {
+  const auto& local = cell.shape().simplices()[index].vertex;
+  return {cell.vertex(local[0]).value, cell.vertex(local[1]).value, cell.vertex(local[2]).value,
+          cell.vertex(local[3]).value};
 }
 
 // Determinants kept in caches, of one particle, and of four.

@@ -73,14 +73,6 @@ std::vector<Vec3> BatchStepper::decided_targets(std::span<const Vec3> targets) c
   return decided;
 }
 
-// Coordinates are made from the second step in a row on in which nothing has moved: one step alone does not pay for
-// them.
-CacheKind BatchStepper::cache_kind(const ParticleCache& cache) const {
-  if (complex_.map().dimension() == 2) return CacheKind::none;
-  if (moved_) return CacheKind::previous_geometry;
-  return cache.stood_still_ ? CacheKind::barycentric : CacheKind::none;
-}
-
 // Also the targets for the batch: those of steps that it must leave as they are are no numbers.
 void BatchStepper::choose(std::span<const ParticleState> states, std::span<const Vec3> targets,
                           std::span<StepTaker> takers, std::span<Vec3> batch_targets) const {
@@ -157,11 +149,11 @@ void BatchStepper::step_chunk(const BatchScene& scene, const BatchParticles& par
 
 // Also makes the cache that of the step.
 BatchScene BatchStepper::scene_of(ParticleCache& cache, std::size_t count) const {
-  const CacheKind kind = cache_kind(cache);
+  const CacheKind in_space = moved_ ? CacheKind::previous_geometry : CacheKind::barycentric;
+  const CacheKind kind = complex_.map().dimension() == 2 ? CacheKind::none : in_space;
   const BatchScene scene{&complex_, moved_, kind == cache.kind_, options_, !cache.walls_changed_};
   cache.kind_ = kind;
   cache.simplices_.resize(kind == CacheKind::none ? 0 : count);
-  cache.stood_still_ = !moved_;
   cache.walls_changed_ = false;
   return scene;
 }

@@ -96,7 +96,6 @@ class BatchStepper {
 
  private:
   [[nodiscard]] std::vector<Vec3> decided_targets(std::span<const Vec3> targets) const;
-  [[nodiscard]] CacheKind cache_kind(const ParticleCache& cache) const;
   friend class PartSteps;
 
   [[nodiscard]] StepReport step_all(const BatchParticles& particles, std::span<const Vec3> targets) const;

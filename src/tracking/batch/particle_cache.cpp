@@ -39,7 +39,6 @@ void ParticleCache::place(std::size_t i, const CellComplex& complex, const Parti
 void ParticleCache::forget() {
   kind_ = CacheKind::none;
   simplices_.resize(0);
-  stood_still_ = false;
 }
 
 void ParticleCache::keep(const KeptRuns& runs) {

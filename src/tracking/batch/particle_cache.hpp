@@ -60,8 +60,7 @@ class ParticleCache {
   std::vector<VertexNumbers> vertices_;
   CacheKind kind_ = CacheKind::none;
   SimplexCache simplices_;      // of this kind; empty where there is none
-  bool stood_still_ = false;    // the vertices, at the last step
-  bool walls_changed_ = false;  // since then
+  bool walls_changed_ = false;  // since the last step
 };
 
 }  // namespace dartcast::detail
