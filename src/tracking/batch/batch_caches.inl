@@ -149,27 +149,6 @@ inline Weights shares_of(Weights w) {
   return w;
 }
 
-// Whether the result of carry_along() surely lies strictly inside the moved simplices. Precondition: the targets q are
-// not proved to lie inside. d: relative to the targets.
-//
-// Let E be the largest |r_i| of the corners relative to q, V the volume, M the largest |c_i| of the corners. The result
-// is a rounded sum of c_i s_i, with s_i >= 2^-12 that sum to 1 up to 4u. Each component is off by at most 9uM from the
-// point with the coordinates s_i / sum. (Numbers flushed to zero are below 2^-300, which is 2^-66 E where the filter
-// applies; this is so in the corners, too.) The cross products of a facet's edges have components of at most 8 E^2.
-// So the determinants of the result are s_i V, off by 24 E^2 9uM < 2^-33 E^3, as M <= (2^12 + 1) E. And s_i V is at
-// least 2^-32 (1 - 2^-25) E^3. The result is not q: one of the determinants of q is below 2^-46 E^3.
-inline Mask4 surely_carried_inside(const SimplexCache4& previous_caches, const BatchDeterminants& d, const Vec3x4& q) {
-  constexpr double min_share = 0x1p-12;
-  constexpr double farthest = 0x1p+12;
-  const Double4 w[4] = {load_doubles(previous_caches.w[0].data()), load_doubles(previous_caches.w[1].data()),
-                        load_doubles(previous_caches.w[2].data()), load_doubles(previous_caches.w[3].data())};
-  const Double4 sum = (w[0] + w[1]) + (w[2] + w[3]);
-  const Double4 extent = largest(d.extent);
-  return (d.volume6() > d.bound) & (d.volume6() >= min_volume * (extent * extent * extent)) &
-         (largest(magnitude(q)) <= farthest * extent) &
-         (smaller(smaller(w[0], w[1]), smaller(w[2], w[3])) >= min_share * sum);
-}
-
 // Whether steps relative to moving vertices surely need no splitting (tracking/step.hpp): |A| |r| <= 2 tolerance edge.
 //
 // The displacements d_i of the corners, less the particle's own q - p, have -r as a mean: |r| <= max |d_i|. Let u_i be

@@ -244,11 +244,11 @@ class CellLoop {
 // Such walks from simplex to simplex, up to their first hexahedron, and wherever a cell is undecided.
 class WalksToCells : public FarWalks<false> {
  public:
-  WalksToCells(Batch<false>& batch, LineLanes& lanes, const BatchList<WalkStart>& walks, BatchList<WalkCursor>& rounds)
-      : FarWalks(batch, lanes, walks, rounds) {}
+  WalksToCells(Batch<false>& batch, const BatchList<WalkStart>& farther, BatchList<WalkCursor>& rounds)
+      : FarWalks(batch, farther, rounds) {}
 
   void run() {
-    LineLoop<false, WalksToCells> loop(b, lanes_, *this);
+    LineLoop<false, WalksToCells> loop(b, *this);
     loop.run();
     while (queue_.written != 0) {
       queue_.read_again();
@@ -260,7 +260,7 @@ class WalksToCells : public FarWalks<false> {
 
   bool start_next(std::uint32_t l) {
     if (FarWalks::start_next(l)) {
-      set_to_cells(l, in_range_of_floats(lanes_.walks[l / 4].line, l % 4));
+      set_to_cells(l, in_range_of_floats(walks[l / 4].line, l % 4));
       return true;
     }
     return resume_next(l);
@@ -272,12 +272,12 @@ class WalksToCells : public FarWalks<false> {
   }
   void pass_target(std::uint32_t l) { set_to_cells(l, false); }
   bool goes_on(std::uint32_t l) {
-    const LinePlace& at = lanes_.places[l];
+    const LinePlace& at = places[l];
     if (((to_cells_ >> l) & 1U) == 0 || at.face == 0 || Cell(at.cell).pool() != hexahedra) return true;
     const auto face = static_cast<std::uint16_t>(at.face - 1);
     const auto triangle = static_cast<std::uint16_t>(at.place);
-    queue_.write({at.record, lanes_.walks[l / 4].line.reach[l % 4], at.particle, at.cell, face, triangle, at.passed,
-                  at.tests, true});
+    queue_.write(
+        {at.record, walks[l / 4].line.reach[l % 4], at.particle, at.cell, face, triangle, at.passed, at.tests, true});
     return false;
   }
 
@@ -293,8 +293,8 @@ class WalksToCells : public FarWalks<false> {
         continue;
       }
       const unsigned row = row_behind(walk);
-      lanes_.walks[l / 4].begin(l % 4, starts_, from, row % 4);
-      lanes_.places[l].begin(walk.particle, walk.cell, walk.record, row, walk.passed, walk.tests);
+      walks[l / 4].begin(l % 4, starts_, from, row % 4);
+      places[l].begin(walk.particle, walk.cell, walk.record, row, walk.passed, walk.tests);
       set_to_cells(l, walk.to_cells);
       return true;
     }

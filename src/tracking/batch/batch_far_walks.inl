@@ -1,8 +1,8 @@
 // Walks to targets that are far away, along their lines (batch_line_walks.inl): many in turn, so that memory is
 // prefetched. Part of the batch's kernel (tracking/batch/batch_kernel.inl).
 //
-// One loop serves three kinds of walks. Each kind is a class that says which walk begins next in a lane, where its corners
-// are, and how it ends: FarWalks here, those that pass whole cells in between (batch_cell_walks.inl), and those of slices
+// One loop serves three kinds of walks. Each kind is a class that has the lanes. It says which walk begins next in one,
+// where its corners are, and how it ends: FarWalks here, those that pass whole cells in between (batch_cell_walks.inl), and those of slices
 // of steps (batch_slice_walks.inl).
 #pragma once
 
@@ -32,13 +32,10 @@ inline std::uint64_t max_line_tests(std::uint64_t simplex_count) {
 struct LineLanes {
   std::array<LineWalks4, lines / 4> walks;
   std::array<LinePlace, lines> places;
-  std::array<std::uint32_t, lines / 4> at_wall;  // a bit for each
-  std::array<RecordPool, CombinatorialMap::general_pool> pools;
+  std::array<std::uint32_t, lines / 4> wall_lanes;  // a bit for each
 
-  LineLanes(const CombinatorialMap& map, const Vec3* positions) {
+  explicit LineLanes(const Vec3* positions) {
     for (LinePlace& at : places) at.corner = positions;  // lanes without a walk read it, too
-    for (std::uint32_t pool = 0; pool < CombinatorialMap::general_pool; ++pool)
-      pools[pool] = {map.record(Cell(pool, 0)), map.record_stride(pool)};
   }
 
   // Begins a walk in lane l, in its first simplex. Returns false where it is not proved by which facet the line enters it.
@@ -59,7 +56,7 @@ struct LineLanes {
 template <bool moved, class Kind>
 class LineLoop {
  public:
-  LineLoop(Batch<moved>& batch, LineLanes& lanes, Kind& kind) : b(batch), lanes_(lanes), kind_(kind) {}
+  LineLoop(Batch<moved>& batch, Kind& kind) : b(batch), kind_(kind) {}
 
   void run() {
     std::uint32_t live = 0;
@@ -87,7 +84,7 @@ class LineLoop {
   // Leaves to Stepper the walks that have asked more tests than any can. Returns the lanes that still have a walk.
   [[gnu::cold, gnu::noinline]] std::uint32_t stop(std::uint32_t live) {
     for (std::uint32_t l = 0; l < lines; ++l) {
-      const LinePlace& at = lanes_.places[l];
+      const LinePlace& at = kind_.places[l];
       if (((live >> l) & 1U) == 0 || at.all_tests() <= max_line_tests(b.simplex_count)) continue;
       b.defer(at.particle);
       if (!kind_.start_next(l)) live ^= 1U << l;
@@ -98,7 +95,7 @@ class LineLoop {
   // Finds the new corner of the walk in lane l, or of the first one after it that has one. Returns false where there is
   // none.
   bool find_corners(std::uint32_t l) {
-    LinePlace& at = lanes_.places[l];
+    LinePlace& at = kind_.places[l];
     while (!find_corner(at, b.map, b.now)) {
       kind_.leave_unlisted(at);
       if (!kind_.start_next(l)) return false;
@@ -109,22 +106,21 @@ class LineLoop {
 
   // Passes a simplex of each walk in the lanes from l on that are in the mask `live`. Returns a mask of those to look at.
   [[gnu::always_inline]] std::uint32_t pass_four(std::uint32_t l, std::uint32_t live) {
-    LineWalks4& walks = lanes_.walks[l / 4];
-    LinePlace* const at = &lanes_.places[l];
+    LineWalks4& walks = kind_.walks[l / 4];
+    LinePlace* const at = &kind_.places[l];
     walks.pass(kind_.corners(at, l));
     std::uint32_t walls = 0;
     for (std::uint32_t k = 0; k < 4; ++k) {
-      if (((live >> k) & 1U) != 0)
-        walls |= leave(at[k], static_cast<unsigned>(walks.slot[k]), b.map, lanes_.pools.data()) << k;
+      if (((live >> k) & 1U) != 0) walls |= leave(at[k], static_cast<unsigned>(walks.slot[k]), b.map) << k;
     }
-    lanes_.at_wall[l / 4] = walls;
+    kind_.wall_lanes[l / 4] = walls;
     return (walks.undecided | walks.near_end | walls | kind_.stops(at, l)) & live;
   }
 
   // Looks at a walk that needs it. Returns whether it goes on.
   bool goes_on(std::uint32_t l) {
-    LinePlace& at = lanes_.places[l];
-    const LineWalks4& walks = lanes_.walks[l / 4];
+    LinePlace& at = kind_.places[l];
+    const LineWalks4& walks = kind_.walks[l / 4];
     if (((walks.undecided >> (l % 4)) & 1U) != 0) return kind_.leave_undecided(at);
     if (((walks.near_end >> (l % 4)) & 1U) != 0) {
       const int side = walks.side_of_target(l % 4);
@@ -133,12 +129,11 @@ class LineLoop {
       if (side > 0) return kind_.arrive(l);
       kind_.pass_target(l);
     }
-    if (((lanes_.at_wall[l / 4] >> (l % 4)) & 1U) != 0) return kind_.end_at_wall(l);
+    if (((kind_.wall_lanes[l / 4] >> (l % 4)) & 1U) != 0) return kind_.end_at_wall(l);
     return kind_.goes_on(l);
   }
 
   Batch<moved>& b;
-  LineLanes& lanes_;
   Kind& kind_;
 };
 
@@ -160,17 +155,17 @@ inline WalkCursor passed_cursor(const CombinatorialMap& map, const LinePlace& at
 
 // Walks from simplex to simplex. Where a sign is not proved, they go on in rounds.
 template <bool moved>
-class FarWalks {
+class FarWalks : public LineLanes {
  public:
-  FarWalks(Batch<moved>& batch, LineLanes& lanes, const BatchList<WalkStart>& walks, BatchList<WalkCursor>& rounds)
-      : b(batch), lanes_(lanes), walks_(walks), rounds_(rounds) {}
+  FarWalks(Batch<moved>& batch, const BatchList<WalkStart>& far, BatchList<WalkCursor>& rounds)
+      : LineLanes(batch.now), b(batch), far_(far), rounds_(rounds) {}
 
   // Begins the next walk that can begin, in lane l. Returns false where there is none.
   bool start_next(std::uint32_t l) {
-    while (next_ < walks_.count) {
+    while (next_ < far_.count) {
       if (next_ % 4 == 0) stage();
-      const auto [i, record] = walks_.at[next_];
-      if (lanes_.begin(l, starts_, next_++ % 4, i, b.states[i], record)) return true;
+      const auto [i, record] = far_.at[next_];
+      if (begin(l, starts_, next_++ % 4, i, b.states[i], record)) return true;
       rounds_.add(first_cursor(i, b.states[i], record, 1, 0));
     }
     return false;
@@ -199,34 +194,33 @@ class FarWalks {
     rounds_.add({at.particle, at.cell, 0, place, at.all_tests(), 0, face, at.record});
   }
   bool arrive(std::uint32_t l) {
-    const WalkCursor cursor = passed_cursor(b.map, lanes_.places[l]);
+    const WalkCursor cursor = passed_cursor(b.map, places[l]);
     if (b.arrive(cursor, corners_of(b.map, cursor))) b.arrived.add({cursor.particle, 0});
     return false;
   }
   bool end_at_wall(std::uint32_t l) {
-    const WalkCursor cursor = passed_cursor(b.map, lanes_.places[l]);
-    return b.end_at_wall(cursor, corners_of(b.map, cursor), lanes_.places[l].exit_facet);
+    const WalkCursor cursor = passed_cursor(b.map, places[l]);
+    return b.end_at_wall(cursor, corners_of(b.map, cursor), places[l].exit_facet);
   }
 
  protected:
   Batch<moved>& b;
-  LineLanes& lanes_;
   LineStarts4 starts_;  // of four walks
 
  private:
   // Prepares four walks, and prefetches what those of the next block need.
   void stage() {
-    const std::uint32_t end = std::min(next_ + block, walks_.count);
+    const std::uint32_t end = std::min(next_ + block, far_.count);
     for (std::uint32_t k = std::min(next_ + block - 4, end); k < end; ++k) {
-      __builtin_prefetch(walks_.at[k].record);
-      prefetch_corners(b.now, b.vertices[walks_.at[k].particle]);
+      __builtin_prefetch(far_.at[k].record);
+      prefetch_corners(b.now, b.vertices[far_.at[k].particle]);
     }
-    const Index4 i = walks_.particles(next_);
+    const Index4 i = far_.particles(next_);
     const Corners4 v = b.simplices_of(b.now, i);
     starts_ = LineStarts4(v, b.starts_of(i, v), b.targets_of(i));
   }
 
-  const BatchList<WalkStart>& walks_;
+  const BatchList<WalkStart>& far_;
   std::uint32_t next_ = 0;
   BatchList<WalkCursor>& rounds_;
 };

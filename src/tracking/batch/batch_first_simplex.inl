@@ -63,7 +63,7 @@ inline void end_inside(Batch<moved>& b, const FirstBlock& at) {
 template <bool moved, class Rests>
 inline std::uint32_t defer_unusual(Batch<moved>& b, const FirstBlock& at, std::uint32_t some, const Rests& rests) {
   std::uint32_t deferred = 0;
-  std::uint32_t unusual = some & held_or_touching(b.states, b.size, at.first, at.count);
+  std::uint32_t unusual = some & held_or_touching(b.states + at.first, at.count);
   for (; unusual != 0; unusual &= unusual - 1) {
     const std::uint32_t i = at.first + lowest(unusual);
     if (!b.states[i].held && !rests(i)) continue;
@@ -184,15 +184,14 @@ class FirstSimplexAtRest {
     const Index4 i = undecided_.particles(k);
     const BatchDeterminants determinants(b.simplices_of(b.now, i), b.targets_of(i));
     const unsigned far = lanes_set(determinants.far_away());
-    const unsigned farther = cells_positive_ ? lanes_set(determinants.far_away(farther_coordinate)) : 0;
-    for (std::uint32_t l = 0; l < std::min(4U, undecided_.count - k); ++l) {
-      const WalkStart& walk = undecided_.at[k + l];
-      if (((farther >> l) & 1U) != 0)
-        out.farther.add(walk);
-      else if (((far >> l) & 1U) != 0)
-        out.far.add(walk);
-      else
-        out.rounds.add(first_cursor(walk.particle, b.states[walk.particle], walk.record, 1, 0));  // they count 3 more
+    const unsigned farther = lanes_set(determinants.far_away(farther_coordinate));
+    const std::uint32_t end = std::min(k + 4, undecided_.count);
+    for (std::uint32_t l = 0; k + l < end; ++l) {
+      const WalkStart walk = undecided_.at[k + l];
+      if (((far >> l) & 1U) != 0)
+        (cells_positive_ && ((farther >> l) & 1U) != 0 ? out.farther : out.far).add(walk);
+      else  // rounds count three more tests
+        out.rounds.add(first_cursor(walk.particle, b.states[walk.particle], walk.record, 1, 0));
     }
   }
 
@@ -226,7 +225,7 @@ class FirstSimplexMoved {
 
  private:
   void test() {
-    far_away_ = one_part_ = carried_inside_ = 0;
+    far_away_ = one_part_ = 0;
     for (std::uint32_t k = 0; k < at.count; k += 4) {
       for (std::uint32_t i = at.first + block + k; i < std::min(at.first + block + k + 4, b.size); ++i)
         prefetch_corners(b.now, b.vertices[i]);
@@ -243,7 +242,6 @@ class FirstSimplexMoved {
       Mask4 proved = one.by_size();
       if (lanes_set(proved) != 15U) proved |= one.by_shape();
       one_part_ |= lanes_set(proved) << k;
-      carried_inside_ |= lanes_set(surely_carried_inside(old, d, q)) << k;
       b.old_determinants[(at.first + k) / 4] = old.w;
       store_previous_geometry(d, old);  // steps that go on, or are deferred, overwrite it later
     }
@@ -277,9 +275,10 @@ class FirstSimplexMoved {
   void carry_four(const Index4& i, std::uint32_t count) {
     const Corners4 now = b.simplices_of(b.now, i);
     const unsigned left_behind = lanes_set(BatchDeterminants(now, b.places_of(i)).any_negative());
-    unsigned inside = 0;
-    for (std::uint32_t l = 0; l < 4; ++l) inside |= ((carried_inside_ >> (i.at[l] - at.first)) & 1U) << l;
-    if (inside != 15U) inside |= carried_inside(b.old_determinants.data(), i, now, b.targets_of(i));
+    const Vec3x4 q = b.targets_of(i);
+    const Vec3x4 x = b.starts_of(i, now);  // not a number where it is unknown
+    const unsigned inside =
+        lanes_set(BatchDeterminants(now, x).all_positive() & ((x.x != q.x) | (x.y != q.y) | (x.z != q.z)));
     for (std::uint32_t l = 0; l < count; ++l) {
       const std::uint32_t particle = i.at[l];
       if (((inside >> l) & 1U) == 0) {
@@ -307,9 +306,8 @@ class FirstSimplexMoved {
   Splitting splitting_;
   WalkLists& out;
   FirstBlock at;
-  std::uint32_t far_away_;        // targets some simplices away
-  std::uint32_t one_part_;        // steps that need no splitting
-  std::uint32_t carried_inside_;  // starts that the mesh carries to strictly inside
+  std::uint32_t far_away_;  // targets some simplices away
+  std::uint32_t one_part_;  // steps that need no splitting
 };
 
 }  // namespace

@@ -1,4 +1,21 @@
-// The kernel of the batch (tracking/batch/batch.hpp): its stages, in order.
+// The kernel of the batch (tracking/batch/batch.hpp): its stages, in order (run()). All have the record of the batch
+// (batch_steps.inl). "Ends" stands for its parts that say how steps end: states, vertices, status, partial steps, walls,
+// arrivals, counts. A stage leaves its other walks to later ones in a list of WalkLists.
+//
+// stage (file)                            reads                                leaves behind
+// prepare_caches (batch_remember)         places, vertices before the move     caches
+// FirstSimplexMoved (batch_first_simplex) targets, caches, all vertices        ends; caches; exits, far, apart
+// FirstSimplexAtRest                      targets, caches                      ends; exits, far, farther, rounds
+// FarWalks (batch_far_walks)              far; vertices on the way             ends; rounds, where a sign is not proved
+// SliceWalks (batch_slice_walks)          apart; vertices before and after     ends
+// WalksToCells (batch_cell_walks)         farther; vertices on the way         ends; rounds, where a sign is not proved
+// leave_first_simplices (batch_walk)      exits                                ends; rounds
+// Rounds (batch_walk)                     rounds; vertices on the way          ends; caches of those that arrive
+// compute_impacts (batch_walls)           walls                                impacts of partial steps; caches
+// cache_arrivals (batch_remember)         arrivals                             caches
+//
+// Below these: batch_simplex.inl (determinants and signs), batch_caches.inl, batch_line_walks.inl (along a line),
+// batch_cell_lanes.inl (through a cell), batch_impacts.inl, batch_slice_starts.inl, and batch_records.inl.
 #pragma once
 
 #include <algorithm>
@@ -23,14 +40,13 @@ namespace {
 // Walks to far targets.
 template <bool moved>
 [[gnu::noinline]] void walk_lines(Batch<moved>& b, WalkLists& walks) {
-  LineLanes lanes(b.map, b.now);
-  FarWalks<moved> far(b, lanes, walks.far, walks.rounds);
-  LineLoop<moved, FarWalks<moved>>(b, lanes, far).run();
+  FarWalks<moved> far(b, walks.far, walks.rounds);
+  LineLoop<moved, FarWalks<moved>>(b, far).run();
   if constexpr (moved) {
-    SliceWalks apart(b, lanes, walks.apart);
-    LineLoop<moved, SliceWalks>(b, lanes, apart).run();
+    SliceWalks apart(b, walks.apart);
+    LineLoop<moved, SliceWalks>(b, apart).run();
   } else if (walks.farther.count != 0) {
-    WalksToCells(b, lanes, walks.farther, walks.rounds).run();
+    WalksToCells(b, walks.farther, walks.rounds).run();
   }
 }
 

@@ -295,12 +295,6 @@ struct LinePlace {
   [[nodiscard]] std::uint32_t all_tests() const { return tests + 3 * passed; }
 };
 
-// Records of the standard types of cells, by pools.
-struct RecordPool {
-  const std::uint32_t* words;
-  std::size_t stride;
-};
-
 // Out of a cell, or on within it.
 struct LineCrossing {
   std::uint32_t cell;
@@ -356,8 +350,7 @@ struct LineCrossing {
 
 // Leaves the simplex, where the new corner has taken a slot of the triangle's, and prefetches the next cell. Returns
 // whether the exit is a wall.
-[[gnu::always_inline]] inline unsigned leave(LinePlace& at, unsigned slot, const CombinatorialMap& map,
-                                             const RecordPool* pools) {
+[[gnu::always_inline]] inline unsigned leave(LinePlace& at, unsigned slot, const CombinatorialMap& map) {
   const LineTurn way = line_turns[at.turned_facet][slot];
   const SimplexExit& exit = at.exits[way.facet];
   const std::uint32_t place = exit.place;
@@ -369,10 +362,7 @@ struct LineCrossing {
   at.exit_facet = way.facet;
   ++at.passed;
   at.cell = next.cell;
-  const Cell cell(next.cell);
-  const RecordPool& pool = pools[cell.pool() & 3U];
-  at.record =
-      cell.pool() == CombinatorialMap::general_pool ? map.record(cell) : pool.words + cell.index() * pool.stride;
+  at.record = map.record(Cell(next.cell));
   __builtin_prefetch(at.record);
   at.face = next.face;
   at.place = place;

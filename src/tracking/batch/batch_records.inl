@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -158,15 +157,6 @@ inline KeptDeterminants4 determinants_of(const SimplexCache4::Table<double>* w, 
   return d;
 }
 
-// Bits of the lanes where the result of carry_along(), as computed, is proved to lie strictly inside and is not q.
-inline unsigned carried_inside(const SimplexCache4::Table<double>* previous_caches, const Index4& i,
-                               const Corners4& now, const Vec3x4& q) {
-  const auto [w] = determinants_of(previous_caches, i);
-  const Vec3x4 x = carry_along(w, now);
-  const Mask4 proved = (w[0] == w[0]) & BatchDeterminants(now, x).all_positive();
-  return lanes_set(proved & ((x.x != q.x) | (x.y != q.y) | (x.z != q.z)));
-}
-
 inline bool any_flag(const CacheFlags* of_four) {
   std::uint32_t four;
   std::memcpy(&four, of_four, sizeof four);
@@ -182,22 +172,12 @@ inline void set_facet_flags(const Mask4& zeros, std::uint32_t which, CacheFlags*
   }
 }
 
-// A bit for each particle that is held or touches a wall: two bytes of the word that starts with the cell say so.
-inline std::uint32_t held_or_touching(const ParticleState* states, std::uint32_t size, std::uint32_t first,
-                                      std::uint32_t n) {
-  constexpr std::size_t begin = offsetof(ParticleState, cell);
-  static_assert(offsetof(ParticleState, touching_count) == begin + 6 && offsetof(ParticleState, held) == begin + 7);
-  constexpr auto last_two = std::bit_cast<long long>(std::array<std::uint8_t, 8>{0, 0, 0, 0, 0, 0, 255, 255});
-  const auto word = [&](std::uint32_t i) {
-    long long bits;
-    std::memcpy(&bits, reinterpret_cast<const char*>(states + i) + begin, sizeof bits);
-    return bits;
-  };
+// A bit for each of so many particles that is held or touches a wall.
+inline std::uint32_t held_or_touching(const ParticleState* states, std::uint32_t count) {
   std::uint32_t bits = 0;
-  for (std::uint32_t k = 0; k < n; k += 4) {
-    const Index4 i = index4_from(first + k, size);
-    const Mask4 words = {word(i.at[0]), word(i.at[1]), word(i.at[2]), word(i.at[3])};
-    bits |= lanes_set((words & splat_bits(last_two)) != 0) << k;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const unsigned either = (states[k].held ? 1U : 0U) | states[k].touching_count;
+    bits |= (either != 0 ? 1U : 0U) << k;
   }
   return bits;
 }

@@ -13,21 +13,20 @@ DARTCAST_BEGIN_KERNEL
 namespace dartcast::detail::DARTCAST_SIMD {
 namespace {
 
-class SliceWalks {
+class SliceWalks : public LineLanes {
  public:
-  SliceWalks(Batch<true>& batch, LineLanes& lanes, const BatchList<SliceWalk>& walks)
-      : b(batch), lanes_(lanes), walks_(walks) {
+  SliceWalks(Batch<true>& batch, const BatchList<SliceWalk>& apart) : LineLanes(batch.now), b(batch), apart_(apart) {
     times_.fill(splat(0.0));  // lanes without a walk read them, too
   }
 
   // The functions of FarWalks.
   bool start_next(std::uint32_t l) {
-    while (next_ < walks_.count) {
+    while (next_ < apart_.count) {
       if (next_ % 4 == 0) stage();
-      const SliceWalk& walk = walks_.at[next_];
+      const SliceWalk& walk = apart_.at[next_];
       of_line_[l] = &walk;
       times_[l / 4][l % 4] = 1.0 / walk.slices;
-      if (lanes_.begin(l, starts_, next_++ % 4, walk.particle, b.states[walk.particle], walk.record)) return true;
+      if (begin(l, starts_, next_++ % 4, walk.particle, b.states[walk.particle], walk.record)) return true;
       b.defer(walk.particle);
     }
     return false;
@@ -54,10 +53,10 @@ class SliceWalks {
  private:
   // Prepares four walks.
   void stage() {
-    const Index4 k = index4_from(next_, walks_.count);
-    const SliceWalk* const walk[4] = {&walks_.at[k.at[0]], &walks_.at[k.at[1]], &walks_.at[k.at[2]],
-                                      &walks_.at[k.at[3]]};
-    const Index4 i = walks_.particles(next_);
+    const Index4 k = index4_from(next_, apart_.count);
+    const SliceWalk* const walk[4] = {&apart_.at[k.at[0]], &apart_.at[k.at[1]], &apart_.at[k.at[2]],
+                                      &apart_.at[k.at[3]]};
+    const Index4 i = apart_.particles(next_);
     const Double4 time = {1.0 / walk[0]->slices, 1.0 / walk[1]->slices, 1.0 / walk[2]->slices, 1.0 / walk[3]->slices};
     const Corners4 v = between(b.simplices_of(b.before, i), b.simplices_of(b.now, i), time);
     const auto target = [&](unsigned l) { return slice_target(b, walk[l]->particle, walk[l]->slices); };
@@ -74,7 +73,7 @@ class SliceWalks {
 
   // Leaves the rest of the step to Stepper. Returns false: the walk does not go on.
   bool end(std::uint32_t l, bool at_wall) {
-    const LinePlace& at = lanes_.places[l];
+    const LinePlace& at = places[l];
     const SliceWalk& slice = *of_line_[l];
     const WalkCursor cursor = passed_cursor(b.map, at);
     const auto number = static_cast<StepStatus>(b.partial.size());
@@ -93,8 +92,7 @@ class SliceWalks {
   }
 
   Batch<true>& b;
-  LineLanes& lanes_;
-  const BatchList<SliceWalk>& walks_;
+  const BatchList<SliceWalk>& apart_;
   std::uint32_t next_ = 0;
   LineStarts4 starts_;
   std::array<const SliceWalk*, lines> of_line_;

@@ -10,7 +10,6 @@
 #include <optional>
 
 #include "dartcast/predicates.hpp"
-#include "tracking/batch/batch_line_walks.inl"
 #include "tracking/batch/batch_steps.inl"
 #include "tracking/walk.hpp"
 
@@ -18,14 +17,8 @@ DARTCAST_BEGIN_KERNEL
 namespace dartcast::detail::DARTCAST_SIMD {
 namespace {
 
-// The ways through a cell of a standard type. Null for others: many have shapes of their own, and tables take memory.
-[[gnu::always_inline]] inline const ExitTable* table_of(std::uint32_t cell, const Shape& shape) {
-  if (Cell(cell).pool() == CombinatorialMap::general_pool) return nullptr;
-  const ExitTable& table = shape.exits();
-  return table.empty() ? nullptr : &table;
-}
-// The row without a table.
-[[gnu::always_inline]] inline unsigned general_row(const Shape& shape, const WalkCursor& cursor) {
+// 4 * simplex + facet: where a walk has come to.
+[[gnu::always_inline]] inline unsigned row_entered(const Shape& shape, const WalkCursor& cursor) {
   if (cursor.face == 0) return cursor.place;
   const Across at = shape.entry(static_cast<std::uint16_t>(cursor.face - 1), cursor.place);
   return 4U * at.index + at.place;
@@ -163,15 +156,12 @@ class Rounds {
     VertexNumbers& corners = corners_[k];
     const CellView cell = b.map.view(Cell(cursor.cell), cursor.record);
     const Shape& shape = cell.shape();
-    const ExitTable* const table = table_of(cursor.cell, shape);
     if (cursor.face != entered) {
-      const unsigned row =
-          table != nullptr ? table->entry(cursor.face, cursor.place).row() : general_row(shape, cursor);
+      const unsigned row = row_entered(shape, cursor);
       cursor.index = static_cast<std::uint16_t>(row / 4);
       cursor.place = static_cast<std::uint16_t>(row % 4);
       cursor.face = entered;
     }
-    exits_[k] = table != nullptr ? table->exits_of(cursor.index) : nullptr;
     if (!moved && cursor.place == no_facet) {  // where the step started
       corners = b.vertices[cursor.particle];
       return prefetch_corners(b.now, corners);
@@ -209,23 +199,10 @@ class Rounds {
     const bool single = std::has_single_bit(behind);
     const unsigned facet =
         single ? static_cast<unsigned>(std::countr_zero(behind)) : first_exit(b, cursor, corners, behind);
-    return pass_on(cursor, corners, facet, exits_[k]);
+    return pass_on(cursor, corners, facet);
   }
 
-  // Within the cell or out of it without a branch: none could predict which.
-  bool pass_on(WalkCursor& cursor, const VertexNumbers& corners, unsigned facet, const SimplexExit* exits) {
-    if (exits == nullptr) return pass_general(cursor, corners, facet);
-    const SimplexExit& exit = exits[facet];
-    const LineCrossing next = cross_standard(b.map, cursor.cell, cursor.record, exit);
-    if (next.wall != 0) return b.end_at_wall(cursor, corners, facet);
-    cursor.cell = next.cell;
-    cursor.face = static_cast<std::uint16_t>(next.face);
-    cursor.place = exit.place;
-    cursor.record = b.map.record(Cell(next.cell));
-    __builtin_prefetch(cursor.record);
-    return true;
-  }
-  bool pass_general(WalkCursor& cursor, const VertexNumbers& corners, unsigned facet) {
+  bool pass_on(WalkCursor& cursor, const VertexNumbers& corners, unsigned facet) {
     const CellView cell = b.map.view(Cell(cursor.cell), cursor.record);
     const Across across = cell.shape().simplices()[cursor.index].across[facet];
     if (across.outer()) return pass_face(b, cursor, corners, facet, across);
@@ -261,7 +238,6 @@ class Rounds {
   BatchList<WalkCursor>& walks_;
   // The block that is tested.
   std::array<VertexNumbers, block> corners_;
-  std::array<const SimplexExit*, block> exits_;  // null without a table
   std::array<BatchDeterminants, block / 4> determinants_;
   std::array<Vec3x4, block / 4> targets_;
   std::array<long long, block> signs_;

@@ -121,7 +121,7 @@ PlaneBlock look_at_triangles(const PlaneVertices& vertices, const BatchSteps& st
   PlaneBlock block;
   std::uint32_t going = 0;  // neither held nor at rest
   const std::uint32_t all = all_of(count);
-  const std::uint32_t unusual = all & held_or_touching(steps.states.data(), first + count, first, count);
+  const std::uint32_t unusual = all & held_or_touching(steps.states.data() + first, count);
   for (std::uint32_t k = 0; k < count; k += 4) {
     const Index4 four = index4_from(first + k, first + count);
     Triangles4 now;
