@@ -162,7 +162,8 @@ ResolvedScene resolve(const Scene& scene, Threads threads, Ranks* ranks, Partiti
   resolved.bodies = scene.bodies;
   resolved.catheters = scene.catheters;
   resolved.solids = scene.solids;
-  const bool reported = partition == Partition::particles && scene.output.report && scene.output.every != std::uint64_t{0};
+  const bool reported =
+      partition == Partition::particles && scene.output.report && scene.output.every != std::uint64_t{0};
   resolved.gathers_contacts = scene.output.contacts || reported || scene.statistics.options.any();
   if (partition == Partition::cells && are_several(ranks)) {
     check_can_be_spread(scene);
