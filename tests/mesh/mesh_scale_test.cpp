@@ -12,7 +12,7 @@ namespace dartcast::test::mesh_scale_test {
 
 TEST(MeshScale, CountsEachEdgeOfACellOnce) {
   const MeshScale box =
-      mesh_scale(generate_box({.cells = {4, 2, 1}, .origin = {1.0, 0.0, -1.0}, .size = {8.0, 2.0, 0.5}}));
+      mesh_scale(generate_box({.cells = {4, 2, 1}, .origin = {1.0, 0.0, -1.0}, .size = Vec3{8.0, 2.0, 0.5}}));
   EXPECT_EQ(box.edge_count, 8U * 12U);
   EXPECT_EQ(box.low, (Vec3{1.0, 0.0, -1.0}));
   EXPECT_EQ(box.high, (Vec3{9.0, 2.0, -0.5}));
@@ -34,14 +34,14 @@ TEST(MeshScale, HasNoSizeWithoutCells) {
 }
 
 TEST(MeshScale, OfThePlaneHasTheEdgesOfItsPolygons) {
-  const MeshScale squares = mesh_scale(generate_rectangle({.cells = {3, 2}, .size = {6.0, 2.0}}));
+  const MeshScale squares = mesh_scale(generate_rectangle({.cells = {3, 2}, .size = std::array{6.0, 2.0}}));
   EXPECT_EQ(squares.edge_count, 24U);
   EXPECT_EQ(squares.smallest_edge, 1.0);
   EXPECT_EQ(squares.mean_edge(), 1.5);
 }
 
 TEST(MeshScale, OfPartsAddsUpToThatOfTheWhole) {
-  const MeshData mesh = generate_box({.cells = {7, 8, 9}, .size = {7.0, 8.0, 9.0}, .mixed = true, .jitter = 0.7});
+  const MeshData mesh = generate_box({.cells = {7, 8, 9}, .size = Vec3{7.0, 8.0, 9.0}, .mixed = true, .jitter = 0.7});
   std::vector<std::uint32_t> parts(mesh.cell_count());
   for (std::size_t c = 0; c < parts.size(); ++c) parts[c] = static_cast<std::uint32_t>(c * c % 5);
   MeshScale sum;
