@@ -100,10 +100,9 @@ bool BatchStepper::walks_freely(StepState& step, const SteppedParticle& particle
   return false;
 }
 
-// A step that the batch has deferred.
+// A step that the batch has deferred, with a decider.
 void BatchStepper::take(StepTaker taker, StepState& step, const SteppedParticle& particle) const {
-  if (taker == StepTaker::carried)
-    return rounds_ != nullptr ? stepper_.run_to_contact(step, particle) : stepper_.run(step, particle);
+  if (taker == StepTaker::carried) return stepper_.run(step, particle);
   if (taker == StepTaker::walk && walks_freely(step, particle)) return;
   step.impact.reset();
   step.result = decider_->step(step.particle, particle.state, particle.weights, step.target, particle.contacts,
@@ -120,16 +119,17 @@ void BatchStepper::step_chunk(const BatchScene& scene, const BatchParticles& par
   partial.reserve(size);
   targets = targets.subspan(begin, size);
   const std::span<ParticleState> states = particles.states.subspan(begin, size);
-  std::array<StepTaker, chunk> takers;
-  std::array<Vec3, chunk> batch_targets;
-  if (decider_ != nullptr)
-    choose(states, targets, std::span(takers).first(size), batch_targets);
-  else
-    std::fill_n(takers.begin(), size, StepTaker::carried);
+  std::vector<StepTaker> takers;  // with a decider
+  std::vector<Vec3> batch_targets;
+  if (decider_ != nullptr) {
+    takers.resize(size);
+    batch_targets.resize(size);
+    choose(states, targets, takers, batch_targets);
+  }
   const BatchSteps batch{states,
                          std::span(cache.vertices_).subspan(begin, size),
                          cache.simplices_.from(begin),
-                         decider_ != nullptr ? std::span<const Vec3>(batch_targets).first(size) : targets,
+                         decider_ != nullptr ? std::span<const Vec3>(batch_targets) : targets,
                          std::span(status).first(size),
                          partial};
   if (complex_.map().dimension() == 2)
@@ -142,7 +142,13 @@ void BatchStepper::step_chunk(const BatchScene& scene, const BatchParticles& par
   for (std::size_t i = next_deferred(batch.status, 0); i < size; i = next_deferred(batch.status, i + 1)) {
     StepState& step = status[i] == step_untouched ? partial.emplace_back() : partial[status[i]];
     step.begin(static_cast<std::uint32_t>(begin + i), states[i], targets[i], report.contacts);
-    take(takers[i], step, {states[i], particles.weights[begin + i], report.contacts, report.counters});
+    const SteppedParticle particle{states[i], particles.weights[begin + i], report.contacts, report.counters};
+    if (decider_ != nullptr)
+      take(takers[i], step, particle);
+    else if (rounds_ != nullptr)
+      stepper_.run_to_contact(step, particle);
+    else
+      stepper_.run(step, particle);
     add(particles, step, steps);
   }
 }
