@@ -135,12 +135,12 @@ double distance(const MeshData& from, const MeshData& to) {
 }  // namespace
 
 void mend_crossings(MeshData& surface, MeshReport& report) {
-  constexpr std::size_t most_pairs = 10000;
+  constexpr std::size_t most_crossings = 10000;
   MeshData mended = surface;
   std::size_t taken = 0;
   for (unsigned round = 0; round <= most_mendings; ++round) {
     const std::vector<TriangleCorners> triangles = triangles_of(mended);
-    const auto pairs = crossing_pairs(mended.points, triangles, most_pairs);
+    const auto pairs = crossing_pairs(mended.points, triangles, most_crossings);
     if (pairs.empty()) {
       if (taken == 0) return;
       const double off = distance(surface, mended);
@@ -158,7 +158,7 @@ void mend_crossings(MeshData& surface, MeshReport& report) {
     std::vector<std::uint8_t> marks = marked(triangles, mended.points.size(), pairs);
     mark_small_parts(triangles, marks);
     taken += static_cast<std::size_t>(std::count(marks.begin(), marks.end(), 1));
-    if (pairs.size() == most_pairs ||
+    if (pairs.size() == most_crossings ||
         static_cast<double>(taken) > most_taken * static_cast<double>(surface.cell_count()))
       return;
     mended = with_holes_closed(mended, marks);

@@ -62,7 +62,7 @@ def of_edits() -> Calls:
         "ComplexEditReport.now": lambda: report.now(first(c.map)),
         "update_after_edit": lambda: dc.topology.update_after_edit(report, 28, values),
         "update_after_edit: vectors": lambda: dc.topology.update_after_edit(report, 28, np.ones((27, 3))),
-        "update_after_edit: refused": refused(lambda: dc.topology.update_after_edit(report, 28, np.arange(27))),
+        "update_after_edit: refused": refused(lambda: dc.topology.update_after_edit(report, 28, 1j * np.arange(27))),
     }
 
 
