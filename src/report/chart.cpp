@@ -172,7 +172,7 @@ std::string patch_colour(std::size_t patch) {
   if (patch == 0) return "var(--line)";
   static constexpr std::array<int, 8> order = {6, 0, 1, 2, 3, 4, 5, 7};
   const std::size_t round = (patch - 1) / order.size();
-  const std::string colour = fmt::format("var(--c{})", order[(patch - 1) % order.size()]);
+  std::string colour = fmt::format("var(--c{})", order[(patch - 1) % order.size()]);
   if (round == 0) return colour;
   return fmt::format("color-mix(in srgb,{} {:.4g}%,var(--text))", colour,
                      100.0 * std::pow(0.65, static_cast<double>(round)));

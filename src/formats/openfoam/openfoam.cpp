@@ -120,9 +120,7 @@ std::string default_scheme(FoamFile& file, std::string_view block) {
   while (file.next() != '\0') {
     if (file.next() == '#') {
       file.directive();
-    } else if (file.next() == '$') {
-      file.skip_entry();
-    } else if (file.word("a key") != block) {
+    } else if (file.next() == '$' || file.word("a key") != block) {
       file.skip_entry();
     } else {
       file.expect('{', "behind the name of a block");
