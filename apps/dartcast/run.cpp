@@ -92,7 +92,7 @@ void announce(const RunArguments& a, const ExpectedOutput& expected, const std::
   if (expected.every == 0)
     fmt::print("no frames\n");
   else
-    fmt::print("{} frames, one each {} steps\n", expected.frames, expected.every);
+    fmt::print("{} frames, one every {} steps\n", expected.frames, expected.every);
   std::fflush(stdout);
 }
 

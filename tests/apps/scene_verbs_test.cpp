@@ -66,7 +66,7 @@ TEST_F(SceneVerbs, ARunSaysHowMuchItWritesAndWhereParticlesEnd) {
   const Result r = run("run s.toml -o out");
   ASSERT_EQ(r.status, 0) << r.error;
   EXPECT_NE(r.out.find("output       about "), std::string::npos) << r.out;
-  EXPECT_NE(r.out.find("101 frames, one each 12 steps\n"), std::string::npos) << r.out;
+  EXPECT_NE(r.out.find("101 frames, one every 12 steps\n"), std::string::npos) << r.out;
   EXPECT_NE(r.out.find("deposition   xmax: 2,000 (100.00 %), 500 per unit of area"), std::string::npos) << r.out;
   EXPECT_NE(content(folder / "out/deposition.csv").find("\nxmax,2000,0,1,4"), std::string::npos);
   EXPECT_TRUE(std::filesystem::exists(folder / "out/particles_001200.vtp"));
