@@ -108,8 +108,8 @@ class SimultaneousStepper {
   ///   if a cell in its reach becomes flat, and after options.max_contacts contacts. It is so, too, if the particle
   ///   starts on a wall, or as near as rounding, or was stopped at one in its last step.
   ///
-  /// Throws as Environment::advance(). Cost: two to four times that of Environment::advance(); some 5 us for a particle that
-  /// comes to a wall, and for each contact.
+  /// Throws as Environment::advance(). Cost: with it a whole step of a simulation takes two to four times the
+  /// instructions (docs/method.md).
   StepReport advance(Environment& environment, Particles& particles, std::span<const Vec3> targets,
                      const ContactCallback& respond = {}, const StepOptions& options = {});
 
