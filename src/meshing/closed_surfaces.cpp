@@ -54,6 +54,7 @@ MeshFile read_one(const std::filesystem::path& file, const SurfaceScene& scene, 
     out.report.warnings.insert(out.report.warnings.end(), parsed.warnings.begin(), parsed.warnings.end());
     std::erase_if(out.report.warnings, [](const Finding& w) { return w.kind == "open_border"; });
     if (!out.report.valid()) return;
+    if (scene.repair) join_borders(out.mesh, out.report);
     if (scene.cap) close_holes(out.mesh, out.report, scene.cap_tolerance);
     if (scene.repair && out.report.valid() && holes_of(out.mesh).empty()) mend_crossings(out.mesh, out.report);
     if (out.report.valid()) add_finding(out.report.defects, open_holes(out.mesh));

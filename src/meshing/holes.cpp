@@ -4,11 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
 #include <utility>
 
+#include "meshing/fill_hole.hpp"
+#include "surface/check_surface.hpp"
 #include "surface/ears.hpp"
 
 namespace dartcast {
@@ -45,11 +48,23 @@ std::string place(const Hole& hole) {
   return fmt::format("around ({:.4g}, {:.4g}, {:.4g})", hole.centre.x, hole.centre.y, hole.centre.z);
 }
 
+/// Flatter holes are closed as seen along their normal. In others the triangles would fold.
+constexpr double flat_tolerance = 0.05;
+
 bool is_flat(const Hole& hole, double tolerance) {
   return hole.area > 0.0 && hole.off_plane <= tolerance * diameter(hole);
 }
 
 }  // namespace
+
+std::vector<TriangleCorners> triangles_of(const MeshData& surface) {
+  std::vector<TriangleCorners> all;
+  for (std::size_t c = 0; c < surface.cell_count(); ++c) {
+    const auto t = surface.cell(c);
+    all.push_back({t[0], t[1], t[2]});
+  }
+  return all;
+}
 
 std::vector<Hole> holes_of(const MeshData& surface) {
   auto border = border_of(surface);
@@ -69,6 +84,29 @@ std::vector<Hole> holes_of(const MeshData& surface) {
     holes.push_back(std::move(hole));
   }
   return holes;
+}
+
+void join_borders(MeshData& surface, MeshReport& report) {
+  std::set<std::uint32_t> on_border;
+  for (const auto& [a, b] : border_of(surface)) on_border.insert(a);
+  Finding joined{"repeated_points", 0, {}, "points of borders at the place of another one have been joined"};
+  std::map<std::array<double, 3>, std::uint32_t> first;
+  std::map<std::uint32_t, std::uint32_t> number;
+  for (const std::uint32_t p : on_border) {
+    const Vec3& x = surface.points[p];
+    const auto [at, added] = first.try_emplace({x.x + 0.0, x.y + 0.0, x.z + 0.0}, p);  // -0 becomes 0
+    number[p] = at->second;
+    if (!added) joined.add(p);
+  }
+  if (joined.count == 0) return;
+  MeshData without = surface;
+  for (std::uint32_t& p : without.connectivity) {
+    if (const auto found = number.find(p); found != number.end()) p = found->second;
+  }
+  if (!check_and_repair_surface(without).valid()) return;
+  surface = std::move(without);
+  report.repairs.push_back(std::move(joined));
+  std::erase_if(report.warnings, [](const Finding& w) { return w.kind == "repeated_points"; });
 }
 
 void close_holes(MeshData& surface, MeshReport& report, double tolerance) {
@@ -93,7 +131,10 @@ void close_holes(MeshData& surface, MeshReport& report, double tolerance) {
   for (std::size_t k = 0; k < holes.size(); ++k) {
     ++tag;
     surface.region_names[tag] = k == 0 ? "inlet" : (holes.size() == 2 ? "outlet" : fmt::format("outlet_{}", k));
-    for (const TriangleCorners& t : ears(surface.points, holes[k].corners)) {
+    std::vector<TriangleCorners> cap;
+    if (!is_flat(holes[k], flat_tolerance)) cap = fill_hole(surface.points, holes[k].corners, triangles_of(surface));
+    if (cap.empty()) cap = ears(surface.points, holes[k].corners);
+    for (const TriangleCorners& t : cap) {
       surface.add_cell(CellType::triangle, t);
       surface.regions.push_back(tag);
       if (!surface.source.empty()) surface.source.push_back(static_cast<std::uint32_t>(surface.cell_count() - 1));

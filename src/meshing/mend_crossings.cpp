@@ -7,9 +7,11 @@
 #include <cstdint>
 #include <map>
 #include <numeric>
+#include <set>
 #include <utility>
 #include <vector>
 
+#include "meshing/fill_hole.hpp"
 #include "meshing/holes.hpp"
 #include "surface/check_surface.hpp"
 #include "surface/ears.hpp"
@@ -24,13 +26,8 @@ constexpr double most_taken = 0.2;
 /// The share of its triangles below which a part that a round cuts off goes, too.
 constexpr double smallest_part = 0.02;
 
-std::vector<TriangleCorners> triangles_of(const MeshData& surface) {
-  std::vector<TriangleCorners> all;
-  for (std::size_t c = 0; c < surface.cell_count(); ++c) {
-    const auto t = surface.cell(c);
-    all.push_back({t[0], t[1], t[2]});
-  }
-  return all;
+std::uint32_t source_of(const MeshData& surface, std::size_t c) {
+  return surface.source.empty() ? static_cast<std::uint32_t>(c) : surface.source[c];
 }
 
 /// Marks of the triangles that cross others, and of those with a corner in common with them.
@@ -69,6 +66,28 @@ std::vector<std::uint32_t> parts_of(const std::vector<TriangleCorners>& triangle
   return parent;
 }
 
+/// Marks all triangles at points where the border of what is not marked meets itself: holes are then simple loops.
+void mark_pinches(const std::vector<TriangleCorners>& triangles, std::size_t points, std::vector<std::uint8_t>& marks) {
+  for (bool more = true; more;) {
+    more = false;
+    std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      for (std::size_t k = 0; marks[t] == 0 && k < 3; ++k) edges.insert({triangles[t][k], triangles[t][(k + 1) % 3]});
+    }
+    std::vector<std::uint8_t> border_edges(points, 0);
+    for (const auto& [a, b] : edges) {
+      if (!edges.contains({b, a}) && border_edges[a] < 2) ++border_edges[a];
+    }
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      const bool pinched =
+          std::any_of(triangles[t].begin(), triangles[t].end(), [&](std::uint32_t p) { return border_edges[p] == 2; });
+      if (marks[t] != 0 || !pinched) continue;
+      marks[t] = 1;
+      more = true;
+    }
+  }
+}
+
 /// Marks small parts of a surface that the marked triangles cut off from the rest.
 void mark_small_parts(const std::vector<TriangleCorners>& triangles, std::vector<std::uint8_t>& marks) {
   const std::vector<std::uint32_t> before = parts_of(triangles, std::vector<std::uint8_t>(triangles.size(), 0));
@@ -101,14 +120,17 @@ MeshData with_holes_closed(const MeshData& surface, const std::vector<std::uint8
   };
   std::uint32_t taken = 0;
   for (std::size_t c = 0; c < surface.cell_count(); ++c) {
-    const std::uint32_t source = surface.source.empty() ? static_cast<std::uint32_t>(c) : surface.source[c];
+    const std::uint32_t source = source_of(surface, c);
     if (marks[c] == 0)
       add(surface.cell(c), source, surface.regions.empty() ? 0 : surface.regions[c]);
     else
       taken = source;
   }
+  const std::vector<TriangleCorners> around = triangles_of(out);
   for (const Hole& hole : holes_of(out)) {
-    for (const TriangleCorners& t : ears(out.points, hole.corners)) add(t, taken, region);
+    std::vector<TriangleCorners> fill = fill_hole(out.points, hole.corners, around);
+    if (fill.empty()) fill = ears(out.points, hole.corners);
+    for (const TriangleCorners& t : fill) add(t, taken, region);
   }
   return out;
 }
@@ -137,29 +159,28 @@ double distance(const MeshData& from, const MeshData& to) {
 void mend_crossings(MeshData& surface, MeshReport& report) {
   constexpr std::size_t most_crossings = 10000;
   MeshData mended = surface;
-  std::size_t taken = 0;
+  Finding taken{"crossings", 0, {}, ""};
   for (unsigned round = 0; round <= most_mendings; ++round) {
     const std::vector<TriangleCorners> triangles = triangles_of(mended);
     const auto pairs = crossing_pairs(mended.points, triangles, most_crossings);
     if (pairs.empty()) {
-      if (taken == 0) return;
-      const double off = distance(surface, mended);
-      report.repairs.push_back(
-          {"crossings",
-           taken,
-           {},
-           fmt::format(
-               "triangles that cross others, and those around them, were taken out and the holes closed; the greatest "
-               "distance between the old surface and the new one is {:.3g}",
-               std::max(off, distance(mended, surface)))});
+      if (taken.count == 0) return;
+      taken.message = fmt::format(
+          "triangles, those that cross others and those around them, were taken out and the holes closed; the greatest "
+          "distance between the old surface and the new one is {:.3g}",
+          std::max(distance(surface, mended), distance(mended, surface)));
+      report.repairs.push_back(std::move(taken));
       surface = std::move(mended);
       return;
     }
     std::vector<std::uint8_t> marks = marked(triangles, mended.points.size(), pairs);
     mark_small_parts(triangles, marks);
-    taken += static_cast<std::size_t>(std::count(marks.begin(), marks.end(), 1));
+    mark_pinches(triangles, mended.points.size(), marks);
+    for (std::size_t t = 0; t < marks.size(); ++t) {
+      if (marks[t] != 0) taken.add(source_of(mended, t));
+    }
     if (pairs.size() == most_crossings ||
-        static_cast<double>(taken) > most_taken * static_cast<double>(surface.cell_count()))
+        static_cast<double>(taken.count) > most_taken * static_cast<double>(surface.cell_count()))
       return;
     mended = with_holes_closed(mended, marks);
     MeshData checked = mended;
