@@ -1,10 +1,14 @@
 // Carries out each kind of event on the environment of a simulation.
 #include "dartcast/events.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <functional>
 #include <variant>
 #include <vector>
 
+#include "dartcast/error.hpp"
 #include "dartcast/simulation.hpp"
 #include "dartcast/validity.hpp"
 #include "simulation/timer.hpp"
@@ -28,6 +32,18 @@ class EventRun {
  private:
   [[nodiscard]] const CellComplex& complex() const { return simulation_.environment().complex(); }
 
+  // Cells or faces that are not there at this time are a reason to refuse the event, as cells that are not valid are.
+  SimulationEdit edit(const std::function<void(ComplexEdit&)>& make) {
+    const auto refusing = [&](ComplexEdit& e) {
+      try {
+        make(e);
+      } catch (const InvalidArgument& why) {
+        throw EditRefused(why.what());
+      }
+    };
+    return simulation_.edit(refusing, event_.orphaned);
+  }
+
   void make(const Cut& cut) {
     carve(std::visit([&](const auto& surface) { return thicken(surface, cut.width); }, cut.surface), Carving::open, {});
   }
@@ -41,16 +57,14 @@ class EventRun {
   void carve(const std::vector<ConvexTool>& tools, Carving what, const CarveOptions& options) {
     const std::vector<Cell> near = cells_near(complex(), tools);
     Carved carved;
-    note(simulation_.edit([&](ComplexEdit& e) { carved = dartcast::carve(e, near, tools, what, options); },
-                          event_.orphaned));
+    note(edit([&](ComplexEdit& e) { carved = dartcast::carve(e, near, tools, what, options); }));
     report_.cells_opened = carved.opened.size();
     report_.cells_whole = carved.whole.size();
   }
 
   void make(const Ligature& tie) {
     std::vector<Cell> section;
-    const SimulationEdit done =
-        simulation_.edit([&](ComplexEdit& e) { section = ligature(e, tie.plane, tie.place); }, event_.orphaned);
+    const SimulationEdit done = edit([&](ComplexEdit& e) { section = ligature(e, tie.plane, tie.place); });
     note(done);
     report_.cells_blocked = section.size();
     for (Cell& c : section) c = done.edit.now(c);
@@ -70,11 +84,15 @@ class EventRun {
 
   void make(const Reconnect& what) {
     const std::vector<Cell> all = simulation_.environment().map().cells();
-    note(simulation_.edit(
-        [&](ComplexEdit& e) {
-          reconnect(e, open_faces(e, all, what.a, what.within), open_faces(e, all, what.b, what.within), what.options);
-        },
-        event_.orphaned));
+    note(edit([&](ComplexEdit& e) {
+      const auto end = [&](const char* name, const Plane& plane) {
+        std::vector<CellFace> faces = open_faces(e, all, plane, what.within);
+        if (faces.empty())
+          throw EditRefused(fmt::format("no open face is within {:.4g} m of the plane of end {}", what.within, name));
+        return faces;
+      };
+      reconnect(e, end("a", what.a), end("b", what.b), what.options);
+    }));
   }
 
   void make(const OpenCells& what) { report_.cells_opened = set_free(what.cells, true); }
@@ -84,16 +102,14 @@ class EventRun {
   std::uint64_t set_free(std::vector<std::uint32_t> sources, bool free) {
     std::sort(sources.begin(), sources.end());
     std::uint64_t changed = 0;
-    note(simulation_.edit(
-        [&](ComplexEdit& e) {
-          for (const Cell c : e.map().cells()) {
-            if (e.map().is_free(c) == free || !std::binary_search(sources.begin(), sources.end(), e.map().source(c)))
-              continue;
-            e.topology().set_free(c, free);
-            ++changed;
-          }
-        },
-        event_.orphaned));
+    note(edit([&](ComplexEdit& e) {
+      for (const Cell c : e.map().cells()) {
+        if (e.map().is_free(c) == free || !std::binary_search(sources.begin(), sources.end(), e.map().source(c)))
+          continue;
+        e.topology().set_free(c, free);
+        ++changed;
+      }
+    }));
     return changed;
   }
 
