@@ -29,8 +29,9 @@ BY_HAND = set("""
     Transaction UpdateReport Vec3
     """.split())
 # Members that are arrays or objects of Python, which python/src binds.
-MEMBERS_BY_HAND = {"BodiesStep::edges", "RunOptions::ranks", "SimulationOptions::ranks", "SimulationStep::contact_sources",
-                   "SimulationStep::left", "SimulationStep::overlaps"}
+MEMBERS_BY_HAND = {"BodiesStep::edges", "ReadOptions::on_stage", "RunOptions::on_stage", "RunOptions::ranks",
+                   "SimulationOptions::ranks", "SimulationStep::contact_sources", "SimulationStep::left",
+                   "SimulationStep::overlaps"}
 # Columns of structured arrays, a row for each struct: members, or NAME:MEMBER of a member, or NAME:CODE about the struct x.
 PLACE = "place:{0}place kind:{0}kind simplex:{0}simplex.simplex dart:{0}dart.number cell:{0}simplex.cell dart_cell:{0}dart.cell"
 FACE = "cell:face.cell face:face.face"

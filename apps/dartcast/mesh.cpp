@@ -51,9 +51,8 @@ int mesh(const MeshArguments& a) {
   SurfaceScene scene = a.scene;
   if (!a.with.empty()) scene.mesher = a.with == "gmsh" ? Mesher::gmsh : Mesher::tetgen;
   for (const std::string& text : a.surfaces) scene.surfaces.push_back(named_surface(text, a.inside));
-  const MeshFile made = while_waiting("meshing " + scene.surfaces.front().file.string(), true, [&] {
-    return mesh_surfaces(scene, {{}, a.max_memory, false, {}});
-  });
+  const MeshFile made = while_waiting("meshing " + scene.surfaces.front().file.string(), true, {{}, a.max_memory},
+                                      [&](const ReadOptions& options) { return mesh_surfaces(scene, options); });
   fmt::print("{}", report_text(made.report));
   if (!made.report.valid()) return failed;
   write_noting_loss(made.mesh, a.out);

@@ -25,8 +25,9 @@ namespace dartcast::app {
 namespace {
 
 int check(const std::string& mesh, bool skip_bad_cells, bool json, const ReadOptions& options) {
-  const MeshReport report =
-      while_waiting("checking " + mesh, !json, [&] { return check_mesh(mesh, {}, options, skip_bad_cells).report; });
+  const MeshReport report = while_waiting("checking " + mesh, !json, options, [&](const ReadOptions& read) {
+    return check_mesh(mesh, {}, read, skip_bad_cells).report;
+  });
   fmt::print("{}{}", json ? report_json(report) : report_text(report), json ? "\n" : "");
   return report.valid() ? done : failed;
 }
@@ -35,13 +36,13 @@ int check(const std::string& mesh, bool skip_bad_cells, bool json, const ReadOpt
 int info_of_surface(const std::string& path, bool json, const ReadOptions& options) {
   const MeshReport report = check_mesh(path, {}, options).report;
   fmt::print("{}{}", json ? report_json(report) : report_text(report), json ? "\n" : "");
-  if (!json)
+  const bool is_read = report.valid() || report.defects.front().kind != "file";
+  if (!json && is_read)
     fmt::print(
         "a surface; to move particles inside it: dartcast mesh {0} -o NAME.vtu, or in a scene mesh = {{ surface = "
-        "\"{0}\" "
-        "}}; as a body or solid: surface = \"{0}\"\n",
+        "\"{0}\" }}; as a body or solid: surface = \"{0}\"\n",
         path);
-  return done;
+  return is_read ? done : failed;
 }
 
 int info(const std::string& path, bool json, const ReadOptions& options) {
@@ -50,9 +51,9 @@ int info(const std::string& path, bool json, const ReadOptions& options) {
   scene.mesh = std::filesystem::path(path);
   if (std::filesystem::path(path).extension() == ".toml") scene = read_scene(path).environment;
   scene.linearise = scene.linearise || options.linearise;
-  const MeshInfo result = while_waiting("loading " + path, !json, [&] {
+  const MeshInfo result = while_waiting("loading " + path, !json, options, [&](const ReadOptions& read) {
     return with_mesh_name(scene.mesh, [&] {
-      SceneMesh loaded = load_scene_mesh(scene, options);
+      SceneMesh loaded = load_scene_mesh(scene, read);
       MeshInfo of_mesh = mesh_info(loaded.mesh, path);
       of_mesh.warnings = std::move(loaded.warnings);
       return of_mesh;
@@ -67,8 +68,10 @@ int convert(const std::string& in, const std::string& out, const ReadOptions& op
     fmt::print("{} frames in {}\n", export_run(in, out), out);
     return done;
   }
-  const auto read = [&] { return is_surface_file(in) ? read_surface(in, options) : read_valid_mesh(in, options); };
-  write_noting_loss(while_waiting("loading " + in, true, read).mesh, out);
+  const auto read = [&](const ReadOptions& o) {
+    return is_surface_file(in) ? read_surface(in, o) : read_valid_mesh(in, o);
+  };
+  write_noting_loss(while_waiting("loading " + in, true, options, read).mesh, out);
   return done;
 }
 

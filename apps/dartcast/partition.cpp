@@ -25,7 +25,8 @@ struct PartitionArguments {
 };
 
 int partition(const PartitionArguments& a) {
-  const MeshData mesh = while_waiting("loading " + a.mesh, true, [&] { return read_valid_mesh(a.mesh, a.read).mesh; });
+  const MeshData mesh = while_waiting("loading " + a.mesh, true, a.read,
+                                      [&](const ReadOptions& read) { return read_valid_mesh(a.mesh, read).mesh; });
   write_mesh_parts(mesh, a.parts, a.out);
   fmt::print("{}: {} cells in {} pieces\n", a.out, mesh.cell_count(), a.parts);
   return done;

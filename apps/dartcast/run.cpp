@@ -132,6 +132,7 @@ int run(const RunArguments& a, Ranks* ranks) {
   const bool speaks = ranks == nullptr || ranks->rank() == 0;
   const bool shows_progress = speaks && !a.quiet && !a.json && is_terminal(stderr);
   WaitingLine waiting(loading_text(scene.environment.mesh), shows_progress);
+  options.on_stage = [&](std::string_view stage) { waiting.enter(stage); };
   ProgressLine line;
   const Interruption interruption;
   const Summary summary = run_scene(

@@ -100,21 +100,27 @@ void ProgressLine::clear() {
 
 WaitingLine::WaitingLine(const std::string& what, bool shows) {
   if (!shows || !is_terminal(stderr)) return;
-  thread_ = std::jthread([what](const std::stop_token& stop) {
+  thread_ = std::jthread([this, what](const std::stop_token& stop) {
     const auto start = std::chrono::steady_clock::now();
-    std::mutex mutex;
-    std::unique_lock lock(mutex);
+    std::unique_lock lock(mutex_);
     std::condition_variable_any end;
     bool is_shown = false;
     while (!stop.stop_requested()) {
       const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(std::chrono::steady_clock::now() - start);
       is_shown = seconds.count() > 0;
-      if (is_shown) fmt::print(stderr, "\r{}: {}\x1b[K", what, duration(static_cast<double>(seconds.count())));
+      if (is_shown)
+        fmt::print(stderr, "\r{}{}{}: {}\x1b[K", what, stage_.empty() ? "" : ", ", stage_,
+                   duration(static_cast<double>(seconds.count())));
       std::fflush(stderr);
       end.wait_for(lock, stop, std::chrono::milliseconds(200), [] { return false; });
     }
     if (is_shown) fmt::print(stderr, "\r\x1b[K");
   });
+}
+
+void WaitingLine::enter(std::string_view stage) {
+  const std::scoped_lock lock(mutex_);
+  stage_ = stage;
 }
 
 void WaitingLine::end() { thread_ = std::jthread(); }

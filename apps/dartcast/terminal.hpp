@@ -4,8 +4,12 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <mutex>
 #include <string>
+#include <string_view>
 #include <thread>
+
+#include "dartcast/mesh_files.hpp"
 
 namespace dartcast::app {
 
@@ -36,24 +40,29 @@ class ProgressLine {
   bool is_shown_ = false;
 };
 
-/// A line on stderr for work whose end is not known: while it lives, it says what is waited for and since when. It comes
-/// after a second, and on a terminal only.
+/// A line on stderr for work whose end is not known: while it lives, it says what is waited for, its stage, and since
+/// when. It comes after a second, and on a terminal only.
 class WaitingLine {
  public:
   /// `shows`: whether there is a line at all.
   WaitingLine(const std::string& what, bool shows);
+  /// From now on the line names this stage, too.
+  void enter(std::string_view stage);
   /// Removes the line, so that other text takes its place.
   void end();
 
  private:
+  std::mutex mutex_;
+  std::string stage_;
   std::jthread thread_;
 };
 
-/// The result of make(). While it is made, there is a WaitingLine.
+/// The result of make(options). While it is made, there is a WaitingLine, with the stages of reading.
 template <class Make>
-auto while_waiting(const std::string& what, bool shows, Make&& make) {
-  const WaitingLine line(what, shows);
-  return make();
+auto while_waiting(const std::string& what, bool shows, ReadOptions options, Make&& make) {
+  WaitingLine line(what, shows);
+  options.on_stage = [&](std::string_view stage) { line.enter(stage); };
+  return make(options);
 }
 
 /// The text of a line of progress, at most `width` characters, with a bar where there is room. `step` of `all` steps are

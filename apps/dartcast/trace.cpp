@@ -62,11 +62,11 @@ Vec3 point_of(const std::string& text, const char* option, unsigned dimension) {
   return {x[0], x[1], x.size() == 3 ? x[2] : 0.0};
 }
 
-Environment load_environment(const std::string& path, std::uint64_t max_memory) {
+Environment load_environment(const std::string& path, const ReadOptions& options) {
   EnvironmentScene scene;
   scene.mesh = std::filesystem::path(path);
   if (std::filesystem::path(path).extension() == ".toml") scene = read_scene(path).environment;
-  return with_mesh_name(scene.mesh, [&] { return Environment(load_scene_mesh(scene, {{}, max_memory}).mesh); });
+  return with_mesh_name(scene.mesh, [&] { return Environment(load_scene_mesh(scene, options).mesh); });
 }
 
 void add_particle(Environment& environment, Particles& particles, const Vec3& x) {
@@ -82,8 +82,9 @@ int trace(const TraceArguments& arguments) {
   const std::string ending = std::filesystem::path(arguments.output).extension().string();
   if (!arguments.output.empty() && ending != ".svg" && ending != ".csv")
     throw CLI::ValidationError("-o", fmt::format("'{}' ends in neither .svg nor .csv", arguments.output));
-  Environment environment = while_waiting("loading " + arguments.input, true,
-                                          [&] { return load_environment(arguments.input, arguments.max_memory); });
+  Environment environment =
+      while_waiting("loading " + arguments.input, true, {{}, arguments.max_memory},
+                    [&](const ReadOptions& read) { return load_environment(arguments.input, read); });
   const unsigned dimension = environment.map().dimension();
   Particles particles;
   add_particle(environment, particles, point_of(arguments.from, "--from", dimension));

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,6 +41,9 @@ struct ReadOptions {
   /// A .msh file that keeps the mesh made around a scene's surfaces (SurfaceScene). If it was made of the same files
   /// with the same values, it is read, and no mesher is needed. Else the mesh is made and written there. Empty: none.
   std::filesystem::path kept_mesh = {};
+  /// Called as a stage starts that may take long, with what is done, such as "tetgen fills the surface". Empty: none.
+  /// The call comes in the thread of the caller.
+  std::function<void(std::string_view stage)> on_stage = {};
 };
 
 /// A mesh as read, and what was found in it.

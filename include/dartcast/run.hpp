@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "dartcast/audit.hpp"
@@ -107,7 +108,8 @@ struct RunOptions {
   /// Go on from the last checkpoint in the folder; from the start if there is none. The outcome is the same as of a
   /// run that was never cut off.
   bool resume = false;
-  std::uint64_t max_memory = 0;  ///< as in ReadOptions, for each file that is read
+  std::uint64_t max_memory = 0;                               ///< as in ReadOptions, for each file that is read
+  std::function<void(std::string_view stage)> on_stage = {};  ///< as in ReadOptions, until the first step
   /// The processes that share the particles (Simulation): all call run_scene() with the same scene and options, and share
   /// the folder. None: one process.
   Ranks* ranks = nullptr;

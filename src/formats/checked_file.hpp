@@ -35,6 +35,11 @@ MeshFile checked_file(const std::filesystem::path& path, const char* what, Read&
   return out;
 }
 
+/// Says that a stage of reading starts.
+inline void enter_stage(const ReadOptions& options, std::string_view stage) {
+  if (options.on_stage) options.on_stage(stage);
+}
+
 /// The file, if it is valid. Throws InvalidMesh with its name, the first defect and the first places of it.
 inline MeshFile valid_file(MeshFile file) {
   if (file.report.valid()) return file;

@@ -75,7 +75,9 @@ ParsedMesh parse(const std::filesystem::path& path, const ReadOptions& options) 
 
 MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
   return checked_file(path, "mesh", [&](MeshFile& out) {
+    enter_stage(options, "reading the file");
     ParsedMesh parsed = parse(path, options);
+    enter_stage(options, "checking the cells");
     check_memory(memory_of_mesh(parsed.mesh), options.max_memory);
     out.mesh = std::move(parsed.mesh);
     if (!out.mesh.types.empty()) out.report = check_and_repair(out.mesh);

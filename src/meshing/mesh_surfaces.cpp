@@ -8,6 +8,7 @@
 #include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_files.hpp"
 #include "dartcast/scene.hpp"
+#include "formats/checked_file.hpp"
 #include "formats/read_memory.hpp"
 #include "meshing/closed_surfaces.hpp"
 #include "meshing/tetrahedra.hpp"
@@ -31,9 +32,11 @@ void check_range(const SurfaceScene& scene) {
   }
 }
 
-Tetrahedra run_mesher(const ClosedSurfaces& surfaces, const SurfaceScene& scene, std::uint64_t memory,
+Tetrahedra run_mesher(const ClosedSurfaces& surfaces, const SurfaceScene& scene, const ReadOptions& options,
                       std::string& format) {
+  const std::uint64_t memory = allowed_memory(options.max_memory);
   format = "tetrahedra by tetgen";
+  if (scene.mesher != Mesher::gmsh) enter_stage(options, "tetgen fills the surface");
   if (scene.mesher == Mesher::tetgen) return run_tetgen(surfaces, scene, memory);
   std::string reason;
   if (scene.mesher == Mesher::any) {
@@ -44,6 +47,7 @@ Tetrahedra run_mesher(const ClosedSurfaces& surfaces, const SurfaceScene& scene,
     }
   }
   format = "tetrahedra by gmsh";
+  enter_stage(options, "gmsh fills the surface");
   try {
     return run_gmsh(surfaces, scene, memory);
   } catch (const Error& e) {
@@ -55,13 +59,15 @@ Tetrahedra run_mesher(const ClosedSurfaces& surfaces, const SurfaceScene& scene,
 
 MeshFile mesh_surfaces(const SurfaceScene& scene, const ReadOptions& options) {
   check_range(scene);
+  enter_stage(options, "checking the surface");
   ClosedSurfaces surfaces = read_closed_surfaces(scene, options);
   MeshFile out{{}, std::move(surfaces.report)};
   out.report.file = scene.surfaces.front().file.string();
   if (!out.report.valid()) return out;
   try {
     std::string format;
-    Tetrahedra made = run_mesher(surfaces, scene, allowed_memory(options.max_memory), format);
+    Tetrahedra made = run_mesher(surfaces, scene, options, format);
+    enter_stage(options, "checking the tetrahedra");
     out.mesh = mesh_with_regions(surfaces, scene, std::move(made));
     const std::vector<Finding> repairs = std::move(out.report.repairs);
     const std::vector<Finding> warnings = std::move(out.report.warnings);

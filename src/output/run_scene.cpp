@@ -274,7 +274,7 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
     summary.surgery.emplace();
   if (options.audit) summary.audit.emplace();
   const Stopwatch load;
-  ReadOptions read{{}, options.max_memory, false, {}};
+  ReadOptions read{{}, options.max_memory, false, {}, options.on_stage};
   if (!options.folder.empty()) read.kept_mesh = options.folder / kept_mesh_name;
   Scene wanted = scene_to_run(scene, options);
   LoadedScene loaded = loaded_scene(std::move(wanted), read, options);
@@ -284,6 +284,7 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
   warn_of_short_run(loaded.scene, steps, summary.warnings);
   RunOutput output(loaded.scene, options, summary);
   output.find_checkpoint();
+  enter_stage(read, "building the map, placing particles");
   describe_mesh(loaded.scene, options, summary);
   summary.seconds_load = load.seconds();
   const Stopwatch locate;

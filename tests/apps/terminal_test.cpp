@@ -85,7 +85,7 @@ TEST_F(Terminal, ProgressIsShownAndTakenAway) {
   EXPECT_TRUE(has(s.screen, "\r\x1b[K\x1b[1mscene\x1b[0m        vessel: 300 steps")) << s.screen;
 }
 
-// A mesher that takes a while: the line says since when, and gives way to the error.
+// A mesher that takes a while: the line says its stage, and since when, and gives way to the error.
 TEST_F(Terminal, WhatIsWaitedForIsShownAndTakenAway) {
   std::ofstream(folder / "a.off") << "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
   const fs::path slept = folder / "slept";  // it is called again where it fails: then it need not wait
@@ -99,7 +99,7 @@ TEST_F(Terminal, WhatIsWaitedForIsShownAndTakenAway) {
   const std::vector<std::string> mesh = {"mesh", "a.off", "-o", "a.vtu", "--with", "tetgen"};
   for (const std::vector<std::string>& words : {mesh, {"run", "a.toml", "-o", "a"}}) {
     const std::string text = screen(words);
-    EXPECT_TRUE(has(text, "\rmeshing a.off: 1 s\x1b[K")) << text;
+    EXPECT_TRUE(has(text, "\rmeshing a.off, tetgen fills the surface: 1 s\x1b[K")) << text;
     EXPECT_TRUE(has(text, "\r\x1b[K")) << text;
   }
   EXPECT_FALSE(has(screen({"run", "a.toml", "-o", "a", "-q"}), "meshing"));
