@@ -1,12 +1,14 @@
 // Reads frames from mesh files. Only the first is checked as a whole mesh if the others have the same cells.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <utility>
 
 #include "dartcast/error.hpp"
+#include "dartcast/mesh_check.hpp"
 #include "formats/file_series.hpp"
 #include "formats/file_text.hpp"
 #include "formats/format_table.hpp"
@@ -32,6 +34,23 @@ class FrameFiles {
         cells_(cells) {
     check_exist(files_);
     read_first();
+  }
+
+  /// Names the array of displacements that would move the points, if there is one, and the points stand still.
+  [[nodiscard]] Finding unused_displacement() const {
+    if (displacement_.empty() || files_.size() < 2) return {};
+    try {
+      const std::vector<Vec3> first = read(0);
+      if (read(files_.size() / 2) != first || read(files_.size() - 1) != first) return {};
+    } catch (const Error&) {
+      return {};  // the run reports it when it gets there
+    }
+    return {"unused_displacement",
+            files_.size(),
+            {},
+            fmt::format("frames whose points stand still, from {} on, have the array '{}': displacement = \"{}\" in "
+                        "[[deformation]] moves the points by it",
+                        files_.front().string(), displacement_, displacement_)};
   }
 
   [[nodiscard]] std::vector<Vec3> read(std::size_t frame) const {
@@ -73,6 +92,12 @@ class FrameFiles {
     return points;
   }
 
+  static bool is_displacement(const DataArray& array) {
+    std::string name = array.name;
+    for (char& c : name) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return array.components == 3 && name.find("disp") != std::string::npos;
+  }
+
   void read_first() {
     if (has_points_alone(files_.front())) {
       points_ = read_points_alone(files_.front()).size();
@@ -80,6 +105,8 @@ class FrameFiles {
     }
     MeshData first = read_whole(files_.front());
     points_ = first.points.size();
+    const auto named = std::find_if(first.point_data.begin(), first.point_data.end(), is_displacement);
+    if (named != first.point_data.end()) displacement_ = named->name;
     const std::optional<VtuPoints> plain = cells_.are_all() ? read_points_of(files_.front()) : std::nullopt;
     if (!plain || plain->points != first.points) return;
     first_cells_ = plain->cells;
@@ -117,14 +144,16 @@ class FrameFiles {
   const ReadOptions options_;
   const CellsOfScene cells_;
   MeshData first_;                            // cells alone
+  std::string displacement_;                  // an array of the first file; empty: it has none
   std::optional<std::uint64_t> first_cells_;  // none: each file is read as a mesh of its own
 };
 
 }  // namespace
 
 FrameReader frame_reader(std::vector<fs::path> files, const MeshData* mesh, const CellsOfScene& cells, double scale,
-                         const ReadOptions& options) {
+                         const ReadOptions& options, std::vector<Finding>& warnings) {
   const auto all = std::make_shared<const FrameFiles>(std::move(files), mesh, cells, scale, options);
+  add_finding(warnings, all->unused_displacement());
   return [all](std::size_t frame) { return all->read(frame); };
 }
 

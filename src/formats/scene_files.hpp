@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dartcast/deformation.hpp"
+#include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_files.hpp"
 #include "dartcast/scene.hpp"
 
@@ -32,9 +33,10 @@ class CellsOfScene {
 /// of the scene, in the same order. Null: it is not known here, and all have as many as the first. Checks that all files
 /// exist, and reads the first one. Throws InvalidMesh, with the file's name, if one is missing, or the first is refused or has
 /// another number of points. The reader throws Error with frame and file if that holds for a later one. Several threads may
-/// call it at once. Precondition: at least one file.
+/// call it at once. Adds a warning if the points stand still, and the first file has an array of displacements. Then it
+/// reads two frames more. Precondition: at least one file.
 FrameReader frame_reader(std::vector<std::filesystem::path> files, const MeshData* mesh, const CellsOfScene& cells,
-                         double scale, const ReadOptions& options);
+                         double scale, const ReadOptions& options, std::vector<Finding>& warnings);
 
 /// Makes samples of the field's files, and reads the first one. The others are read when they are needed; that they
 /// exist is checked here. `mesh`: of the scene, read. Throws Error and its kinds, naming the file.

@@ -81,9 +81,11 @@ SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& opti
   return read;
 }
 
-void read_all_but_mesh(Scene& scene, const MeshData* mesh, const ReadOptions& options) {
+std::vector<Finding> read_all_but_mesh(Scene& scene, const MeshData* mesh, const ReadOptions& options) {
+  std::vector<Finding> warnings;
   ReadOptions read = options;
   read.linearise = scene.environment.linearise;
+  read.on_stage = {};  // most files are read later, by other threads
   const CellsOfScene cells = mesh != nullptr && scene.environment.skip_bad_cells ? CellsOfScene(*mesh) : CellsOfScene();
   for (DeformationScene& s : scene.deformation) {
     if (s.frames.empty()) continue;
@@ -96,7 +98,7 @@ void read_all_but_mesh(Scene& scene, const MeshData* mesh, const ReadOptions& op
     }
     FieldSeries series = file_series({"deformation", {}, std::exchange(s.frames, {}), s.step.times, s.spacing});
     s.step.times = std::move(series.times);
-    s.step.reader = frame_reader(std::move(series.files), mesh, cells, scene.environment.scale, read);
+    s.step.reader = frame_reader(std::move(series.files), mesh, cells, scene.environment.scale, read, warnings);
   }
   if (mesh != nullptr) {
     for (FieldScene* field : {&scene.motion.field, &scene.motion.force}) read_field_files(*field, *mesh, cells, read);
@@ -115,11 +117,12 @@ void read_all_but_mesh(Scene& scene, const MeshData* mesh, const ReadOptions& op
     if (const auto* file = std::get_if<std::filesystem::path>(&solid.shape))
       solid.shape = with_name("solid", solid.name, [&] { return read_surface(*file, options).mesh; });
   }
+  return warnings;
 }
 
 LoadedScene load_scene_files(Scene scene, const ReadOptions& options, Threads threads) {
   SceneMesh read = read_scene_mesh(scene.environment, options, threads);
-  read_all_but_mesh(scene, &read.mesh, options);
+  for (Finding& warning : read_all_but_mesh(scene, &read.mesh, options)) read.warnings.push_back(std::move(warning));
   resolve_mesh(read, scene);
   scene.environment = EnvironmentScene{};
   scene.environment.mesh = std::move(read.mesh);

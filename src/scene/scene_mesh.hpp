@@ -42,8 +42,8 @@ void resolve_mesh(SceneMesh& read, const Scene& scene);
 /// Reads an environment, and sets its free cells and patches. Errors have the mesh file's name.
 SceneMesh load_scene_mesh(const EnvironmentScene& scene, const ReadOptions& options = {});
 
-/// Reads all other files that the scene names. `mesh`: the scene's, read. Null: this process has a part of it at most.
+/// Reads all other files that the scene names. Returns warnings. `mesh`: the scene's, read. Null: this process has a part of it at most.
 /// Then the scene has no fields from files, and no frames if it leaves cells out.
-void read_all_but_mesh(Scene& scene, const MeshData* mesh, const ReadOptions& options);
+std::vector<Finding> read_all_but_mesh(Scene& scene, const MeshData* mesh, const ReadOptions& options);
 
 }  // namespace dartcast

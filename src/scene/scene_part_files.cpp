@@ -124,7 +124,7 @@ LoadedScene load_scene_part(Scene scene, Ranks& ranks, const ReadOptions& option
   } else {
     part = sent_part(scene, ranks, options, threads, loaded);
   }
-  read_all_but_mesh(scene, nullptr, options);
+  for (Finding& warning : read_all_but_mesh(scene, nullptr, options)) loaded.warnings.push_back(std::move(warning));
   scene.environment = EnvironmentScene{};
   scene.environment.mesh = std::move(part);
   loaded.scene = std::move(scene);

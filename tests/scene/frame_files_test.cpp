@@ -47,7 +47,8 @@ class FrameFilesTest : public testing::Test {
   }
   static FrameReader reader(std::vector<fs::path> files, double scale = 1.0) {
     const MeshData mesh = read_valid_mesh(files.front()).mesh;
-    return frame_reader(std::move(files), &mesh, {}, scale, {});
+    std::vector<Finding> warnings;
+    return frame_reader(std::move(files), &mesh, {}, scale, {}, warnings);
   }
   // The frame of `second` after `first`, and the same by reading it as a mesh of its own.
   void expect_same(const fs::path& first, const fs::path& second) const {
@@ -166,9 +167,10 @@ TEST_F(FrameFilesTest, PointsAloneAreThoseOfTheMesh) {
   const MeshData mesh = test::cubes(2);
   const std::vector<Vec3> swayed = moved(mesh, sway).points;
   const fs::path first = write("a.vtp", test::vtp_text(mesh.points, {{0, 1, 2}}));
+  std::vector<Finding> warnings;
   const FrameReader read = frame_reader({first, write("b.vtp", test::vtp_text(swayed, {})), write("c.vtu", mesh),
                                          write("d.vtp", test::vtp_text({swayed.begin(), swayed.end() - 1}, {}))},
-                                        &mesh, {}, 2.0, {});
+                                        &mesh, {}, 2.0, {}, warnings);
   const auto doubled = [](std::vector<Vec3> points) {
     for (Vec3& x : points) x *= 2.0;
     return points;
@@ -236,6 +238,34 @@ TEST_F(FrameFilesTest, ADisplacementIsAddedToThePoints) {
   test::expect_parts(
       test::error_text([&] { (void)load("files = 'result_*.vtu'\nspacing = 0.1\ndisplacement = 'D'\n"); }),
       {"deformation", "displacement 'D'", "Displacement (3)"});
+}
+
+// The same files without the key: walls would stand still, and nobody would know why. Points that move need no warning,
+// nor do files without such an array.
+TEST_F(FrameFilesTest, ADisplacementThatIsNotUsedIsWarnedOf) {
+  const MeshData rest = test::cubes(2, CellType::tetrahedron);
+  const auto warnings_of = [&](const std::string& array, const auto& motion) {
+    MeshData moving = rest;
+    moving.point_data.push_back({array, 3, std::vector<double>(3 * rest.points.size(), 0.5)});
+    for (int k = 0; k < 3; ++k) {
+      write(fmt::format("result_{:03}.vtu", k), moving);
+      moving.points = moved(moving, motion).points;
+    }
+    return load_scene_files(parse_scene("[environment]\nmesh = 'result_000.vtu'\n[[deformation]]\nkind = 'frames'\n"
+                                        "files = 'result_*.vtu'\nspacing = 0.1\n",
+                                        folder / "scene.toml"))
+        .warnings;
+  };
+  const auto stands = [](Vec3&) {};
+  for (const char* array : {"Displacement", "displ"}) {
+    const std::vector<Finding> warnings = warnings_of(array, stands);
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_EQ(warnings.front().count, 3U);
+    test::expect_parts(warnings.front().message,
+                       {"points stand still", "result_000.vtu", fmt::format("displacement = \"{}\"", array)});
+  }
+  EXPECT_TRUE(warnings_of("velocity", stands).empty());
+  EXPECT_TRUE(warnings_of("Displacement", sway).empty());
 }
 
 TEST_F(FrameFilesTest, ScenesReadTheirFramesLater) {
