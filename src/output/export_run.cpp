@@ -65,9 +65,15 @@ class UsdaFile {
     add_samples(out, "vector3f[] velocities", velocities_);
     add_samples(out, "float[] widths", widths_);
     add_samples(out, "int64[] ids", ids_);
-    out += "    }\n\n    def Mesh \"walls\"\n    {\n        uniform token subdivisionScheme = \"none\"\n";
-    add_samples(out, "int[] faceVertexCounts", counts_);
-    add_samples(out, "int[] faceVertexIndices", corners_);
+    out += "    }\n\n";
+    if (is_plane_) {
+      out += "    def BasisCurves \"walls\"\n    {\n        uniform token type = \"linear\"\n";
+      add_samples(out, "int[] curveVertexCounts", counts_);
+    } else {
+      out += "    def Mesh \"walls\"\n    {\n        uniform token subdivisionScheme = \"none\"\n";
+      add_samples(out, "int[] faceVertexCounts", counts_);
+      add_samples(out, "int[] faceVertexIndices", corners_);
+    }
     add_samples(out, "point3f[] points", walls_);
     return out + "    }\n}\n";
   }
@@ -83,10 +89,16 @@ class UsdaFile {
     widths_.emplace_back(code, list_text(frame.radii, [](double r) { return static_cast<float>(2.0 * r); }));
     ids_.emplace_back(code, list_text(frame.ids, [](std::uint64_t id) { return id; }));
     if (k > 0 && frames_.walls_stand()) return;
-    const RunWalls walls = frames_.walls(k);
+    RunWalls walls = frames_.walls(k);
     std::vector<std::size_t> sizes;
     for (std::size_t f = 0; f + 1 < walls.offsets.size(); ++f) sizes.push_back(walls.offsets[f + 1] - walls.offsets[f]);
     add_changed(counts_, code, list_text(sizes, [](std::size_t n) { return n; }));
+    is_plane_ = walls.are_lines();
+    if (is_plane_) {  // curves name no points: each has its own
+      std::vector<Vec3> ends;
+      for (const std::uint32_t p : walls.corners) ends.push_back(walls.points[p]);
+      walls.points = std::move(ends);
+    }
     add_changed(corners_, code, list_text(walls.corners, [](std::uint32_t p) { return p; }));
     walls_.emplace_back(code, in_brackets(walls.points));
   }
@@ -108,6 +120,7 @@ class UsdaFile {
   const RunFrames& frames_;
   Samples points_, velocities_, widths_, ids_;
   Samples counts_, corners_, walls_;
+  bool is_plane_ = false;
 };
 
 void write_usda(const RunFrames& frames, const fs::path& path) { write_bytes(path, UsdaFile(frames).text()); }

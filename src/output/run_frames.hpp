@@ -16,6 +16,7 @@ struct RunWalls {
   std::vector<Vec3> points;
   std::vector<std::size_t> offsets = {0};
   std::vector<std::uint32_t> corners;
+  [[nodiscard]] bool are_lines() const { return offsets.size() > 1 && offsets[1] == 2; }
 };
 
 struct RunFrame {

@@ -223,8 +223,7 @@ void write_vtkhdf(const RunFrames& frames, const std::filesystem::path& path) {
     RunWalls walls;
     for (std::size_t k = 0; k < frames.size(); ++k) {
       if (k == 0 || !frames.walls_stand()) walls = frames.walls(k);
-      const bool lines = walls.offsets.size() > 1 && walls.offsets[1] == 2;
-      file.add(frames.read(k), walls, lines);
+      file.add(frames.read(k), walls, walls.are_lines());
     }
     file.finish();
   } catch (const InvalidMesh&) {

@@ -1,6 +1,7 @@
 // The verbs that bring scenes in and particles out: mesh, lagrangian.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -98,12 +99,33 @@ TEST_F(SceneVerbs, ARunIsConverted) {
   expect_failure("convert out -o a.xyz", 1, ".vtkhdf");
 }
 
+// A mesh of USD has no faces of two corners: walls of the plane are curves, each with its own points.
+TEST_F(SceneVerbs, ARunInThePlaneIsConverted) {
+  (void)write("s.toml",
+              "[environment]\ngenerator = 'rectangle'\ncells = [2, 1]\n[[particles]]\ncount = 3\n[motion]\ndt = "
+              "0.1\nsteps = 4\n[output]\nevery = 2\n");
+  ASSERT_EQ(run("run s.toml -o out -q").status, 0);
+  ASSERT_EQ(run("convert out -o a.usda").status, 0);
+  const std::string usda = content(folder / "a.usda");
+  for (const char* part : {"def BasisCurves \"walls\"", "uniform token type = \"linear\"",
+                           "int[] curveVertexCounts = [2, 2, 2, 2, 2, 2]\n"})
+    EXPECT_NE(usda.find(part), std::string::npos) << part;
+  EXPECT_EQ(usda.find("faceVertex"), std::string::npos);
+  const std::size_t at = usda.find("point3f[] points = [");  // the walls stand still
+  ASSERT_NE(at, std::string::npos);
+  const std::string points = usda.substr(at, usda.find(']', at) - at);
+  EXPECT_EQ(std::count(points.begin(), points.end(), '('), 12);
+}
+
 TEST_F(SceneVerbs, SurfacesAreShownAndConverted) {
   (void)write("a.off", "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n");
   const Result info = run("info a.off");
   EXPECT_EQ(info.status, 0);
   EXPECT_NE(info.out.find("dartcast mesh a.off -o"), std::string::npos) << info.out;
   EXPECT_NE(info.out.find("mesh = { surface = \"a.off\" }"), std::string::npos) << info.out;
+  const Result none = run("info none.off");
+  EXPECT_EQ(none.status, 1);
+  EXPECT_EQ(none.out.find("to move particles"), std::string::npos) << none.out;
   for (const char* name : {"a.stl", "a.obj", "a.ply", "b.off", "a.vtp"}) {
     ASSERT_EQ(run(std::string("convert a.off ") + name).status, 0) << name;
     ASSERT_EQ(run(std::string("convert ") + name + " c.vtu").status, 0) << name;
