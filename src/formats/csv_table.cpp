@@ -55,15 +55,16 @@ std::vector<std::string_view> fields(std::string_view line, char separator) {
 CsvTable::CsvTable(std::filesystem::path path, std::uint64_t max_memory) : path_(std::move(path)), file_(path_) {
   std::string line;
   if (!std::getline(file_, line)) throw Error(fmt::format("{}: the file cannot be read, or is empty", path_.string()));
+  std::string_view head;
   try {
     check_memory(memory_of_text(file_bytes(path_)), max_memory);
+    head = without_byte_order_mark(line);
   } catch (const InvalidMesh& e) {
     throw Error(fmt::format("{}: the file cannot be read: {}", path_.string(), e.what()));
   }
-  const std::string_view head = without_byte_order_mark(line);
   separator_ = separator_in(head);
   for (const std::string_view name : fields(head, separator_)) {
-    if (has(name)) fail(fmt::format("there are two columns '{}'; name each once", name));
+    if (has(name)) fail(fmt::format("there are two columns '{}'; the first line must name each once", name));
     names_.emplace_back(name);
   }
 }

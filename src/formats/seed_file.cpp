@@ -21,8 +21,8 @@ constexpr std::array<std::string_view, 7> csv_columns = {"x", "y", "z", "vx", "v
 // A run computes these itself.
 constexpr std::array<std::string_view, 5> passed_over = {"id", "cell", "kind", "contacts", "held"};
 // ParaView computes these.
-constexpr std::array<std::string_view, 4> of_paraview = {"Points:Magnitude", "Points_Magnitude", "velocity:Magnitude",
-                                                         "velocity_Magnitude"};
+constexpr std::array<std::string_view, 5> of_paraview = {"Point ID", "Points:Magnitude", "Points_Magnitude",
+                                                         "velocity:Magnitude", "velocity_Magnitude"};
 
 // ParaView's names of the columns in tables that it saves.
 void rename_columns_of_paraview(CsvTable& table) {

@@ -120,7 +120,8 @@ TEST_F(RunFilesTest, SeedsInTablesOfOtherPrograms) {
         std::string("\"Points:0\",\"Points:1\",\"Points:2\",\"velocity:0\",\"velocity:1\",\"velocity:2\",\"velocity:"
                     "Magnitude\","
                     "\"id\"\n1,2,3,1,0,0,1,0\n2,2,2,0,-1,0.5,1.1,1\n"),
-        std::string("Points_0,Points_1,Points_2,velocity_0,velocity_1,velocity_2\n1,2,3,1,0,0\n2,2,2,0,-1,0.5\n"),
+        std::string(
+            "Point ID,Points_0,Points_1,Points_2,velocity_0,velocity_1,velocity_2\n0,1,2,3,1,0,0\n1,2,2,2,0,-1,0.5\n"),
         std::string("x;y;z;vx;vy;vz\n1;2;3;1;0;0\n2;2;2;0;-1;0.5\n"),
         std::string("x\ty\tz\tvx\tvy\tvz\n1\t2\t3\t1\t0\t0\n2\t2\t2\t0\t-1\t0.5\n"),
         std::string("x,y,z,vx,vy,vz\n+1.0D+00, 2d0,3E0,1.,0,0\n2,2,2,0,-1.0d+00,5.0D-01\n")}) {
@@ -165,6 +166,8 @@ TEST_F(RunFilesTest, ColumnsOfSeedsThatHaveNoMeaningAreRefused) {
   expect_error("x,y,z,\n1,1,1,\n", ":1: the column '' is unknown");
   expect_error("x,y,z,vx,vy\n1,1,1,1,1\n", ":1: there is no column 'vz'");
   expect_error("x,y,z,x\n1,1,1,1\n", ":1: there are two columns 'x'");
+  expect_error("1,1,1\n2,2,2\n", ":1: there are two columns '1'; the first line must name each once");
+  expect_error("\xff\xfex,y,z\n1,1,1\n", ".csv: the file cannot be read: byte 0: the text is in UTF-16");
   expect_error("x,y,z,radius\n1,1,1,-0.5\n", "the radius of position 0 (counted from 0) is -0.5");
   expect_error("x,y,z,radius\n1,1,1,0\n1,1,1,inf\n", ":3: column 'radius': 'inf' is not finite");
   expect_error("x,y,z,vx,vy,vz\n1,1,1,0,0,nan\n", ":2: column 'vz': 'nan' is not finite");
