@@ -213,7 +213,13 @@ std::vector<std::string> TomlTable::keys() const {
 }
 
 void TomlTable::require(std::string_view key, std::string_view what) {
-  if (find(key) == nullptr) fail(key, fmt::format("{} is missing: {}", key, what));
+  if (find(key) != nullptr) return;
+  const std::vector<std::string> wanted = {std::string(key)};
+  for (const std::string& other : keys()) {
+    const std::string meant = did_you_mean(other, wanted);
+    if (known_.count(other) == 0 && !meant.empty()) fail(other, fmt::format("the key '{}' is unknown{}", other, meant));
+  }
+  fail(key, fmt::format("{} is missing: {}", key, what));
 }
 
 void TomlTable::finish() const {

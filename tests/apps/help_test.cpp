@@ -117,6 +117,8 @@ TEST_F(Help, AWrongKeyOfASceneNamesTheOneThatIsClose) {
   expect_failure("run a.toml", 1, "the key 'gravty' is unknown (did you mean 'gravity'?); there are ");
   (void)write("b.toml", box + "[contacts]\n");
   expect_failure("run b.toml", 1, "the key 'contacts' is unknown (did you mean 'contact'?)");
+  (void)write("c.toml", "seed = 1\n[enviroment]\ngenerator = 'box'\n");
+  expect_failure("run c.toml", 1, "c.toml:2: the key 'enviroment' is unknown (did you mean 'environment'?)");
   (void)write("c.toml", box + "[contact]\nresponse = 'reflekt'\n");
   expect_failure("run c.toml", 1, "it must be one of reflect, slide, stick, absorb, escape (did you mean 'reflect'?)");
 }
