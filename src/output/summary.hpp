@@ -32,6 +32,8 @@ std::string deposition_csv(const Summary& summary);
 inline bool counts_tests(const Counters& c) {
   return std::accumulate(c.histogram.begin(), c.histogram.end(), std::uint64_t{0}) == c.particle_steps;
 }
+/// Whether the run had any whose steps seconds_solids counts.
+inline bool has_solids(const Summary& s) { return !s.bodies.empty() || !s.catheters.empty() || !s.solids.empty(); }
 inline double ratio(std::uint64_t a, std::uint64_t b) { return static_cast<double>(a) / static_cast<double>(b); }
 /// All that the steps cost counts, but neither output nor the audit.
 inline double ns_per_particle_step(const Summary& s) {

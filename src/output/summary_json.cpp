@@ -60,7 +60,7 @@ Json seconds(const Summary& s) {
   if (s.deforms) json["deform"] = s.totals.seconds_deform;
   if (s.totals.seconds_collide > 0.0) json["collide"] = s.totals.seconds_collide;
   json["respond"] = s.totals.seconds_respond;
-  if (!s.bodies.empty() || !s.catheters.empty() || !s.solids.empty()) json["solids"] = s.seconds_solids;
+  if (has_solids(s)) json["solids"] = s.seconds_solids;
   if (s.statistics) json["statistics"] = s.statistics->seconds;
   json["write"] = s.seconds_write;
   json["writing_thread"] = s.seconds_writing_thread;

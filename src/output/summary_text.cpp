@@ -130,7 +130,7 @@ void add_cost(SummaryTable& table, const Summary& s) {
   add("deform", t.seconds_deform);
   add("collide", t.seconds_collide);
   add("respond", t.seconds_respond);
-  add("solids", s.seconds_solids);
+  if (has_solids(s)) add("solids", s.seconds_solids);
   if (s.statistics) add("statistics", s.statistics->seconds);
   add("write", s.seconds_write);
   add("report", s.seconds_report);

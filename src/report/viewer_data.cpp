@@ -14,6 +14,7 @@
 #include "base/parallel.hpp"
 #include "dartcast/error.hpp"
 #include "report/encode.hpp"
+#include "report/grouped.hpp"
 #include "report/picture.hpp"
 #include "report/selection.hpp"
 #include "simulation/start_times.hpp"
@@ -284,8 +285,8 @@ class Builder {
     out["kind"] = block(kind);
     out["point"] = block(point);
     if (kept_every > 1)
-      data_.taken.notes.push_back(
-          fmt::format("of {} contacts those of one particle in {} are in the report", all, kept_every));
+      data_.taken.notes.push_back(fmt::format("of {} contacts those of one particle in {} are in the report",
+                                              grouped(all), grouped(kept_every)));
   }
 
   struct Faces {

@@ -356,6 +356,21 @@ TEST_F(Report, LimitsAreKeptAndSaid) {
   EXPECT_THROW(write_report(folder / "a", {3, 65536}), InvalidArgument);
 }
 
+// More contacts than a page takes: the note says how many there are, with their digits in groups.
+TEST_F(Report, ContactsThatAreLeftOutAreCounted) {
+  const Summary summary =
+      run("[environment]\ngenerator = 'box'\n[[particles]]\ncount = 2000\nvelocity = [90.0, 0.0, 0.0]\n[motion]\n"
+          "dt = 0.1\nsteps = 15\n[contact]\nresponse = 'reflect'\nrestitution = 1.0\n",
+          "a");
+  const auto& kinds = summary.totals.counters.contacts;
+  const std::uint64_t all = kinds[0] + kinds[1] + kinds[2];
+  ASSERT_GT(all, 250'000U);
+  ASSERT_LT(all, 500'000U);
+  ASSERT_EQ(summary.report->notes.size(), 1U);
+  EXPECT_EQ(summary.report->notes.front(),
+            fmt::format("of {},{:03} contacts those of one particle in 2 are in the report", all / 1000, all % 1000));
+}
+
 // A recording that was cut off or changed is read as far as it makes sense, or refused: nothing worse.
 TEST_F(Report, HostileRecordingsAreRefusedOrRead) {
   run(busy, "a");
