@@ -172,10 +172,10 @@ std::string patch_colour(std::size_t patch) {
   if (patch == 0) return "var(--line)";
   static constexpr std::array<int, 8> order = {6, 0, 1, 2, 3, 4, 5, 7};
   const std::size_t round = (patch - 1) / order.size();
-  std::string colour = fmt::format("var(--c{})", order[(patch - 1) % order.size()]);
-  if (round == 0) return colour;
-  return fmt::format("color-mix(in srgb,{} {:.4g}%,var(--text))", colour,
-                     100.0 * std::pow(0.65, static_cast<double>(round)));
+  const int colour = order[(patch - 1) % order.size()];
+  const int other = order[(patch - 1 + 5 * round) % order.size()];
+  if (colour == other) return fmt::format("var(--c{})", colour);
+  return fmt::format("color-mix(in srgb,var(--c{}) 75%,var(--c{}))", colour, other);
 }
 
 std::string bar_chart(const Chart& chart, const std::vector<Bar>& bars) {

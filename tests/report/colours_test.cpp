@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "report/chart.hpp"
 #include "report/style.hpp"
 
 namespace dartcast::colours_test {
@@ -95,6 +96,41 @@ TEST(Colours, AreDistinctToColourBlindPeople) {
         for (std::size_t k = 0; k < i; ++k)
           EXPECT_GE(distance(times(eye, all[i]), times(eye, all[k])), clearly) << scheme << " c" << k << " c" << i;
       }
+    }
+  }
+}
+
+// The colour of a patch: a variable, or two of them mixed as sRGB.
+Colour colour_of_patch(std::size_t patch, int scheme) {
+  const std::string text = patch_colour(patch);
+  const auto variable = [&](std::size_t from) {
+    const std::size_t at = text.find("--", from) + 2;
+    return colour_of(text.substr(at, text.find(')', at) - at), scheme);
+  };
+  const Colour first = variable(0);
+  const std::size_t percent = text.find('%');
+  if (percent == std::string::npos) return first;
+  const double share = std::stod(text.substr(text.rfind(' ', percent))) / 100.0;
+  const Colour second = variable(percent);
+  const auto encoded = [](double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055; };
+  Colour mixed{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double x = share * encoded(first[i]) + (1.0 - share) * encoded(second[i]);
+    mixed[i] = x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
+  }
+  return mixed;
+}
+
+// More patches than there are colours: 64 of them can still be distinguished, if not at a glance.
+TEST(Colours, OfPatchesAreDistinct) {
+  constexpr std::size_t patches = 64;
+  for (const int scheme : {0, 1}) {
+    std::vector<Colour> all;
+    for (std::size_t p = 1; p <= patches; ++p) all.push_back(colour_of_patch(p, scheme));
+    for (std::size_t i = 0; i < patches; ++i) {
+      EXPECT_GE(contrast(all[i], colour_of("panel", scheme)), 3.0) << scheme << " patch " << i + 1;
+      for (std::size_t k = 0; k < i; ++k)
+        EXPECT_GE(distance(all[i], all[k]), i < 24 ? 8.0 : 5.0) << scheme << " patches " << k + 1 << ' ' << i + 1;
     }
   }
 }

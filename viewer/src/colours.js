@@ -35,14 +35,16 @@ export function pageColours() {
 }
 
 /**
- * The colour of a patch, wherever it is shown; 0 is no patch. The first patch is neutral: most walls belong to it. Where
- * there are more patches than colours, these come again, nearer to that of the text. src/report/chart.cpp has the same rule.
+ * The colour of a patch, wherever it is shown; 0 is no patch. The first patch is neutral: most walls belong to it. If
+ * there are more patches than colours, these come again, each mixed with another one. src/report/chart.cpp has the same rule.
  */
 export function patchColour(patch, page) {
   if (patch === 0) return page.line;
-  const { categories, text } = page;
-  const share = 0.65 ** Math.floor((patch - 1) / categories.length);
-  return categories[(patch - 1) % categories.length].map((c, k) => share * c + (1 - share) * text[k]);
+  const { categories } = page;
+  const n = categories.length;
+  const round = Math.floor((patch - 1) / n);
+  const other = categories[(patch - 1 + 5 * round) % n];
+  return categories[(patch - 1) % n].map((c, k) => 0.75 * c + 0.25 * other[k]);
 }
 
 const toLinear = (c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
