@@ -23,7 +23,8 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& path);
 struct LoadedScene {
   Scene scene;      ///< names no file but frames to read later: a Simulation can be made of it
   Finding skipped;  ///< bad cells that were left out, if the scene wants that
-  /// Of the mesh, about its walls: faces of cyclic patches (walls here), and of named groups between two free cells (none).
+  /// About walls: faces of cyclic patches (walls here), and of named groups between two free cells (none). About surfaces
+  /// of which crossing triangles were replaced, and about frames that stand still beside an array of displacements.
   std::vector<Finding> warnings;
 };
 

@@ -167,7 +167,7 @@ void mend_crossings(MeshData& surface, MeshReport& report) {
       if (taken.count == 0) return;
       taken.message = fmt::format(
           "triangles, those that cross others and those around them, were taken out and the holes closed; the greatest "
-          "distance between the old surface and the new one is {:.3g}",
+          "distance between the old surface and the new one is {:.3g} in the unit of the file",
           std::max(distance(surface, mended), distance(mended, surface)));
       report.repairs.push_back(std::move(taken));
       surface = std::move(mended);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -20,12 +21,28 @@ namespace dartcast {
 
 namespace {
 
-/// The first lines of the file. Gmsh skips them as comments.
+constexpr std::string_view end_of_comments = "$EndComments\n";
+
+/// The first lines of the file. Gmsh skips them as comments. Repairs of the surfaces follow, a line each.
 std::string mark_of(const SurfaceScene& scene) {
   std::string values = fmt::format("{} {:a} {:a} {} {:a} {:a} {} {}", scene.outside, scene.box, scene.size, scene.cap,
                                    scene.cap_tolerance, scene.angle, scene.repair, static_cast<int>(scene.mesher));
   for (const NamedSurface& s : scene.surfaces) values += fmt::format(" {} {}", s.region, file_digest(s.file));
-  return fmt::format("$Comments\ndartcast surface mesh {:016x}\n$EndComments\n", digest(values));
+  return fmt::format("$Comments\ndartcast surface mesh {:016x}\n", digest(values));
+}
+
+std::string lines_of(const std::vector<Finding>& repairs) {
+  std::string lines;
+  for (const Finding& r : repairs) lines += fmt::format("{} {} {}\n", r.kind, r.count, r.message);
+  return lines;
+}
+
+std::vector<Finding> repairs_in(std::string_view text, std::size_t from) {
+  std::vector<Finding> repairs;
+  std::istringstream lines(std::string(text.substr(from, text.find(end_of_comments) - from)));
+  Finding r;
+  while (lines >> r.kind >> r.count && std::getline(lines >> std::ws, r.message)) repairs.push_back(r);
+  return repairs;
 }
 
 // In the scene's regions particles are free, outside they are not.
@@ -47,6 +64,7 @@ std::optional<MeshFile> read_kept(const SurfaceScene& scene, const std::filesyst
     const std::string text = read_bytes(kept);
     if (!text.starts_with(mark)) return std::nullopt;
     MeshFile file = read_text(scene, text);
+    file.report.repairs = repairs_in(text, mark.size());
     if (file.report.valid()) return file;
   } catch (const InvalidMesh&) {
   }
@@ -61,7 +79,8 @@ MeshFile kept_surface_mesh(const SurfaceScene& scene, const ReadOptions& options
   if (auto file = read_kept(scene, kept, mark)) return std::move(*file);
   MeshFile made = mesh_surfaces(scene, options);
   if (!made.report.valid()) return made;
-  const std::string text = mark + format_gmsh_2(made.mesh);
+  const std::string text =
+      mark + lines_of(made.report.repairs) + std::string(end_of_comments) + format_gmsh_2(made.mesh);
   if (!kept.empty()) {
     if (kept.has_parent_path()) std::filesystem::create_directories(kept.parent_path());
     write_bytes(kept, text);

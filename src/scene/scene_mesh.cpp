@@ -63,6 +63,9 @@ SceneMesh read_scene_mesh(const EnvironmentScene& scene, const ReadOptions& opti
     if (warning.kind == "bad_cells") result.skipped = warning;
     if (warning.kind == "cyclic") result.warnings.push_back(warning);
   }
+  for (const Finding& repair : result.report.repairs) {
+    if (repair.kind == "crossings") result.warnings.push_back(repair);
+  }
   return result;
 }
 

@@ -16,6 +16,7 @@
 
 #include "dartcast/mesh_files.hpp"
 #include "dartcast/scene.hpp"
+#include "dartcast/scene_file.hpp"
 #include "meshing/closed_surfaces.hpp"
 #include "output/mesh_report_text.hpp"
 #include "support/expectations.hpp"
@@ -112,6 +113,23 @@ TEST_F(MendCrossings, AFewCrossingTrianglesAreReplaced) {
   }
 }
 
+// A run says how far its walls are from the surface in the file, also if its mesh was kept.
+TEST_F(MendCrossings, AScenesWarningHasTheDistance) {
+  (void)scene_of(dented(16, 1));
+  ReadOptions options;
+  options.kept_mesh = folder_ / "kept.msh";
+  for (const bool again : {false, true}) {
+    EXPECT_EQ(fs::exists(options.kept_mesh), again);
+    Scene scene =
+        parse_scene("[environment]\nmesh = { surface = 'lumen.off', repair = true }\n", folder_ / "scene.toml");
+    const std::vector<Finding> warnings = load_scene_files(std::move(scene), options).warnings;
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_GT(warnings.front().count, 10U);
+    test::expect_parts(warnings.front().message,
+                       {"triangles, those that cross others", "greatest distance", "unit of the file"});
+  }
+}
+
 TEST_F(MendCrossings, SurfacesThatCrossAsAWholeAreNotRepaired) {
   MeshData two = cuboid_of_grids(4);
   const MeshData other = cuboid_of_grids(4);
@@ -176,7 +194,7 @@ TEST_F(MendCrossings, CrossingsInSurfacesOfOthers) {
     EXPECT_TRUE(crossing_pairs(found.points, found.triangles, 1).empty()) << entry.path();
     for (const Finding& r : found.report.repairs) {
       if (r.kind != "crossings") continue;
-      EXPECT_LT(std::stod(r.message.substr(r.message.rfind(' '))), 0.03 * (z[1] - z[0])) << entry.path();
+      EXPECT_LT(std::stod(r.message.substr(r.message.rfind(" is ") + 4)), 0.03 * (z[1] - z[0])) << entry.path();
       std::cout << entry.path().filename() << ": " << r.count << ' ' << r.message << '\n';
     }
   }
