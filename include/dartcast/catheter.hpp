@@ -26,7 +26,7 @@ struct CatheterOptions {
   /// Between its points. Without edges choose it smaller than the smallest feature of the vessel.
   double spacing = 1e-3;
   /// Bending stiffness (N m^2), over the resistance to sideways motion of a metre of catheter in one step (N / m^2):
-  /// m^4. Bends that are longer than its fourth root outlast a step.
+  /// m^4. Larger is stiffer. Typical: 1e-9 (soft) to 1e-7 (stiff).
   double stiffness = 1e-8;
   double tip_length = 0.0;     ///< of the pre-bent tip
   double tip_curvature = 0.0;  ///< of the tip at rest, 1 / m; the bend is along a frame's normal
