@@ -439,7 +439,7 @@ TEST(ReportCharts, EachPatchHasItsColour) {
   EXPECT_EQ(colours.size(), 40U);
   EXPECT_EQ(patch_colour(0), "var(--line)");
   EXPECT_EQ(patch_colour(2), "var(--c0)");
-  EXPECT_EQ(patch_colour(10), "color-mix(in srgb,var(--c0) 65%,var(--text))");
+  EXPECT_EQ(patch_colour(10), "color-mix(in srgb,var(--c0) 75%,var(--c5))");
   const std::string bars = bar_chart({.title = "t"}, {{"a", 2.0, "2", patch_colour(3)}, {"b", 1.0, "1"}});
   EXPECT_NE(bars.find("fill=\"var(--c1)\"><title>a: 2<"), std::string::npos) << bars;
   EXPECT_NE(bars.find("fill=\"var(--c0)\"><title>b: 1<"), std::string::npos) << bars;
