@@ -113,7 +113,7 @@ TEST_F(SceneVerbs, ARunInThePlaneIsConverted) {
   EXPECT_EQ(usda.find("faceVertex"), std::string::npos);
   const std::size_t at = usda.find("point3f[] points = [");  // the walls stand still
   ASSERT_NE(at, std::string::npos);
-  const std::string points = usda.substr(at, usda.find(']', at) - at);
+  const std::string points = usda.substr(at, usda.find('\n', at) - at);
   EXPECT_EQ(std::count(points.begin(), points.end(), '('), 12);
 }
 

@@ -1,6 +1,7 @@
 // Reports of runs: their data against the simulation and contacts.csv, resumed runs, hostile recordings, limits.
 #include "dartcast/report.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -262,7 +262,7 @@ TEST_F(FrameFilesTest, ADisplacementThatIsNotUsedIsWarnedOf) {
     ASSERT_EQ(warnings.size(), 1U);
     EXPECT_EQ(warnings.front().count, 3U);
     test::expect_parts(warnings.front().message,
-                       {"points stand still", "result_000.vtu", fmt::format("displacement = \"{}\"", array)});
+                       {"points stand still", "result_000.vtu", fmt::format("displacement = \"{}\"", array).c_str()});
   }
   EXPECT_TRUE(warnings_of("velocity", stands).empty());
   EXPECT_TRUE(warnings_of("Displacement", sway).empty());
