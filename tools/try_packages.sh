@@ -28,6 +28,7 @@ inside sh -c 'apt-get install -q -y --no-install-recommends /packages/*.deb g++ 
 echo "the demo:"
 inside dartcast run /usr/share/doc/dartcast/examples/vessel.toml --steps 100 -o /try/vessel -q
 inside ls /try/vessel/report.html
+inside dartcast convert /try/vessel -o /try/vessel.vtkhdf
 
 # The tasks of docs/start.md, by its own lines. The reader's surface is a cube of 20 mm.
 "$tools/start_lines.py" "$root/try/start"
