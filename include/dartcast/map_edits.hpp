@@ -279,6 +279,18 @@ std::vector<Cell> sew(Transaction& t, Dart a, Dart b);
 /// gets a copy. Refused on the boundary.
 std::vector<Cell> unsew(Transaction& t, CellFace f);
 
+/// Makes walls of faces between two cells, with this patch on both sides. Both sides keep their vertices, so they stay
+/// together while these move. Refused on the boundary.
+std::vector<Cell> set_walls(Transaction& t, std::span<const CellFace> faces, Patch patch);
+
+/// Sews walls that have a cell on both sides. `faces`: both sides of each, such as inner_walls() finds. They keep their
+/// patches. Refused if a face is not open, or if no other one has its corners.
+std::vector<Cell> remove_walls(Transaction& t, std::span<const CellFace> faces);
+
+/// The walls of set_walls(), and those of a mesh (MeshData::baffle_tags): open faces with the corners of another one. Two
+/// in a row are the sides of one wall. In the order of the cells. Cost: n log n in the open faces.
+std::vector<CellFace> inner_walls(const CombinatorialMap& map);
+
 /// Removes a cell. The faces of its neighbours become open. Parts that still touch in a vertex or an edge keep it in
 /// common.
 void remove(Transaction& t, Cell c);

@@ -1,5 +1,6 @@
-// Edits that sew faces and open them.
+// Edits that sew faces and open them, and walls between two cells.
 #include <algorithm>
+#include <map>
 #include <unordered_set>
 #include <utility>
 
@@ -62,6 +63,31 @@ std::vector<Vertex> corners_from(const CombinatorialMap& map, Dart d) {
   return vertices;
 }
 
+std::vector<Vertex> sorted_corners(const CombinatorialMap& map, CellFace f) {
+  std::vector<Vertex> corners = corners_from(map, {f.cell, map.shape(f.cell).first_dart(f.face)});
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
+
+// The sides of walls between two cells, among these open faces: those with the same corners, in the order of the first.
+// `single`: called with each face that is alone.
+template <class Single>
+std::vector<CellFace> paired(const CombinatorialMap& map, std::span<const CellFace> faces, const Single& single) {
+  std::map<std::vector<Vertex>, CellFace> beyond;  // the last face with these corners
+  for (const CellFace f : faces) beyond[sorted_corners(map, f)] = f;
+  std::vector<CellFace> pairs;
+  for (const CellFace f : faces) {
+    const auto found = beyond.find(sorted_corners(map, f));
+    if (found == beyond.end()) continue;  // the second side
+    if (found->second == f)
+      single(f);
+    else
+      pairs.insert(pairs.end(), {f, found->second});
+    beyond.erase(found);
+  }
+  return pairs;
+}
+
 }  // namespace
 
 std::vector<Cell> sew(Transaction& t, Dart a, Dart b) {
@@ -122,6 +148,57 @@ std::vector<Cell> unsew(Transaction& t, CellFace f) {
     t.roll_back(before);
     throw;
   }
+}
+
+std::vector<Cell> set_walls(Transaction& t, std::span<const CellFace> faces, Patch patch) {
+  const CombinatorialMap& map = t.map();
+  Rework rework(t);
+  for (const CellFace f : faces) {
+    expect_face(map, f);
+    const CellFace g = map.opposite(f);
+    if (!g.valid()) refuse(map, f.cell, "has nothing beyond the face: it is a wall already");
+    for (const CellFace side : {f, g}) {
+      DraftFace& face = rework.draft(side.cell).faces[side.face];
+      face.across = {};
+      face.patch = patch;
+    }
+  }
+  return rework.put();
+}
+
+std::vector<Cell> remove_walls(Transaction& t, std::span<const CellFace> faces) {
+  const CombinatorialMap& map = t.map();
+  for (const CellFace f : faces) {
+    expect_face(map, f);
+    if (map.opposite(f).valid()) refuse(map, f.cell, "has another cell beyond the face: it is no wall to remove");
+  }
+  const auto fail = [&](CellFace f) {
+    refuse(map, f.cell, "has a wall to remove, but no face with the same corners is named: name both its sides");
+  };
+  const std::vector<CellFace> pairs = paired(map, faces, fail);
+  Rework rework(t);
+  for (std::size_t i = 0; i < pairs.size(); i += 2) {
+    const CellFace f = pairs[i];
+    const CellFace g = pairs[i + 1];
+    const bool same_point = map.point(f) == map.point(g);
+    for (const auto& [side, other] : {std::pair{f, g}, std::pair{g, f}}) {
+      DraftFace& face = rework.draft(side.cell).faces[side.face];
+      face.across.face = other;
+      if (!same_point) face.point = {};
+    }
+  }
+  return rework.put();
+}
+
+std::vector<CellFace> inner_walls(const CombinatorialMap& map) {
+  std::vector<CellFace> open;
+  for (const Cell c : map.cells()) {
+    const std::size_t count = map.shape(c).face_count();
+    for (std::uint16_t f = 0; f < count; ++f) {
+      if (!map.opposite({c, f}).valid()) open.push_back({c, f});
+    }
+  }
+  return paired(map, open, [](CellFace) {});
 }
 
 }  // namespace dartcast
