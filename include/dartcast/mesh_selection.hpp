@@ -32,6 +32,10 @@ void select_free_values(MeshData& mesh, const std::string& array, std::span<cons
 /// mesh is unchanged.
 void select_patches(MeshData& mesh, std::span<const std::string> names);
 
+/// Makes walls of the faces of the named patches, also of those between two free cells (MeshData::baffle_tags). Patches
+/// are named, and errors thrown, as by select_patches().
+void select_walls(MeshData& mesh, std::span<const std::string> names);
+
 /// Divides the walls into patches at sharp edges. They replace the patches of the mesh. Walls are the faces of free
 /// cells without a free cell behind them: those on the boundary, and those between free and blocked cells. Two walls
 /// with an edge in common (in the plane: with an end) may be in one patch. For that, their normals differ by at most

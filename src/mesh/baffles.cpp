@@ -2,7 +2,10 @@
 #include "mesh/baffles.hpp"
 
 #include <algorithm>
+#include <map>
 #include <utility>
+
+#include "mesh/structure.hpp"
 
 namespace dartcast {
 namespace {
@@ -43,6 +46,21 @@ std::vector<std::int32_t> tags_of_coinciding_faces(const MeshData& mesh) {
   std::sort(tags.begin(), tags.end());
   tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
   return tags;
+}
+
+void list_both_sides(MeshData& mesh, const std::set<std::int32_t>& tags) {
+  std::vector<std::uint8_t> cells(mesh.patch_tags.size());
+  for_each_patch_face_of_cells(mesh, [&](std::size_t f, std::size_t /*cell*/) { ++cells[f]; });
+  std::map<std::vector<std::uint32_t>, unsigned> listed;
+  for (std::size_t f = 0; f < cells.size(); ++f) {
+    if (cells[f] > 1) ++listed[sorted(mesh.patch_face(f))];
+  }
+  for (std::size_t f = 0; f < cells.size(); ++f) {
+    const auto face = mesh.patch_face(f);
+    if (cells[f] < 2 || tags.count(mesh.patch_tags[f]) == 0 || listed[sorted(face)] > 1) continue;
+    mesh.add_patch_face(std::vector<std::uint32_t>(face.rbegin(), face.rend()), mesh.patch_tags[f]);
+    if (!mesh.patch_source.empty()) mesh.patch_source.push_back(mesh.patch_source[f]);
+  }
 }
 
 }  // namespace dartcast

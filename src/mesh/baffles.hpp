@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -25,5 +26,8 @@ class Baffles {
 
 /// The tags of patches that have a face with the corners of another patch face, ascending. Cost: n log n.
 std::vector<std::int32_t> tags_of_coinciding_faces(const MeshData& mesh);
+
+/// Adds to the patch faces of these tags that two cells have, and that are listed once, the same from the other side.
+void list_both_sides(MeshData& mesh, const std::set<std::int32_t>& tags);
 
 }  // namespace dartcast

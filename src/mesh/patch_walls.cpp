@@ -17,7 +17,8 @@ namespace {
 std::string why_no_wall(const PatchFaces& faces) {
   if (!faces.inner.empty())
     return fmt::format(
-        "its {} faces lie between two free cells: block the cells on one side with the key free, or do not name it",
+        "its {} faces lie between two free cells: name it in the key walls, block the cells on one side with the key "
+        "free, or do not name it",
         faces.inner.size());
   if (faces.blocked > 0)
     return fmt::format("its {} faces are faces of blocked cells alone: free the cells on one side, or do not name it",
@@ -57,8 +58,8 @@ Finding inner_patch_faces(const MeshData& mesh) {
     for (const std::size_t f : faces.inner) finding.add(f);
   }
   finding.message = fmt::format(
-      "faces of named groups between two free cells ({}): particles pass them, unless the cells on one side are "
-      "blocked",
+      "faces of named groups between two free cells ({}): particles pass them, unless the key walls names them or the "
+      "cells on one side are blocked",
       fmt::join(names, ", "));
   return finding;
 }

@@ -116,13 +116,12 @@ class SmoothParts {
   std::vector<std::uint32_t> parent_;
 };
 
-}  // namespace
-
-void select_patches(MeshData& mesh, std::span<const std::string> names) {
+// The tags of the named patches.
+std::set<std::int32_t> tags_of_patches(const MeshData& mesh, std::span<const std::string> names) {
   std::map<std::string, std::set<std::int32_t>> known;
   for (const auto& [tag, name] : mesh.patch_names) known[name].insert(tag);
   for (const std::int32_t tag : mesh.patch_tags) known[patch_name(mesh, tag)].insert(tag);
-  std::set<std::int32_t> kept;
+  std::set<std::int32_t> tags;
   for (const std::string& name : names) {
     const auto found = known.find(name);
     if (found == known.end()) {
@@ -131,8 +130,15 @@ void select_patches(MeshData& mesh, std::span<const std::string> names) {
       throw InvalidMesh(fmt::format("the mesh has no patch '{}'; its patches are: {}", name,
                                     all.empty() ? "none" : fmt::format("{}", fmt::join(all, ", "))));
     }
-    kept.insert(found->second.begin(), found->second.end());
+    tags.insert(found->second.begin(), found->second.end());
   }
+  return tags;
+}
+
+}  // namespace
+
+void select_patches(MeshData& mesh, std::span<const std::string> names) {
+  std::set<std::int32_t> kept = tags_of_patches(mesh, names);
   for (const std::int32_t tag : mesh.baffle_tags) {
     if (kept.insert(tag).second) mesh.patch_names[tag] = "";
   }
@@ -142,6 +148,15 @@ void select_patches(MeshData& mesh, std::span<const std::string> names) {
     if (kept.count(all.patch_tags[f]) == 0) continue;
     mesh.add_patch_face(all.patch_face(f), all.patch_tags[f]);
     if (!all.patch_source.empty()) mesh.patch_source.push_back(all.patch_source[f]);
+  }
+}
+
+void select_walls(MeshData& mesh, std::span<const std::string> names) {
+  if (names.empty()) return;
+  const std::set<std::int32_t> tags = tags_of_patches(mesh, names);
+  list_both_sides(mesh, tags);
+  for (const std::int32_t tag : tags) {
+    if (!is_baffle(mesh, tag)) mesh.baffle_tags.push_back(tag);
   }
 }
 
