@@ -102,10 +102,24 @@ struct CloseCells {
   std::vector<std::uint32_t> cells;
 };
 
+/// Opens the walls of a patch that have a cell on both sides (inner_walls()). Refused if it has none. Cost: n log n in the
+/// open faces.
+struct OpenWalls {
+  static constexpr EventKind kind = EventKind::open;
+  Patch patch;
+};
+
+/// Makes walls of a patch's faces between two cells, as a valve of no thickness does. Refused if it has none. Cost: linear
+/// in the cells of the scene.
+struct CloseWalls {
+  static constexpr EventKind kind = EventKind::close;
+  Patch patch;
+};
+
 /// A change of the topology at a time.
 struct Event {
   double at = 0.0;  ///< s: before the first step that begins at this time or later
-  std::variant<Cut, Carve, Ligature, Reconnect, OpenCells, CloseCells> what;
+  std::variant<Cut, Carve, Ligature, Reconnect, OpenCells, CloseCells, OpenWalls, CloseWalls> what;
   OrphanPolicy orphaned = OrphanPolicy::relocate;
   bool required = false;  ///< whether a simulation ends if it is refused (EditRefused); else it goes on as it was
 };

@@ -90,6 +90,7 @@ struct EnvironmentScene {
   bool linearise = false;       ///< cells of second order are taken by their corners (ReadOptions)
   bool skip_bad_cells = false;  ///< flat, inverted and indivisible cells are left out: their faces are walls
   std::variant<std::monostate, FreeRegions, FreeValues> free;  ///< none: as the mesh says, else all
+  std::vector<std::string> walls;  ///< groups whose faces are walls also between two free cells (select_walls())
   /// The wall groups to distinguish; none: all groups of the mesh. Names: only these groups of the mesh.
   std::variant<std::monostate, std::vector<std::string>, PatchArray, PatchAngle> patches;
 };
@@ -236,7 +237,8 @@ struct ContactScene {
 /// An event, with the names that it uses.
 struct EventScene {
   Event event;
-  std::string patch{};   ///< reconnect: of the new faces on the side; empty: none
+  /// reconnect: of the new faces on the side; empty: none. Open and close: in place of that of the event; empty: that.
+  std::string patch{};
   std::string region{};  ///< open, close: its cells, in place of those of the event; empty: those
 };
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "dartcast/cell_complex.hpp"
+#include "dartcast/map_edits.hpp"
 #include "mesh/mesh_scale.hpp"
 
 namespace dartcast {
@@ -44,6 +45,7 @@ void add_place(const CellComplex& complex, const CellView& view, std::uint16_t f
 void count_walls(const CellComplex& complex, MeshInfo& info) {
   const CombinatorialMap& map = complex.map();
   info.wall_faces = map.wall_face_count();
+  info.inner_walls = inner_walls(map).size() / 2;
   for (const Cell c : map.cells()) {
     const CellView view = map.view(c);
     if (!view.is_free()) continue;
@@ -168,6 +170,7 @@ std::string info_json(const MeshInfo& i) {
                                  {"smallest_edge", i.smallest_edge},
                                  {"mean_edge", i.mean_edge},
                                  {"wall_faces", i.wall_faces},
+                                 {"inner_walls", i.inner_walls},
                                  {"shapes", i.shapes},
                                  {"simplices", i.simplices},
                                  {"interior_points", i.steiner_points},
@@ -187,6 +190,7 @@ std::string info_text(const MeshInfo& i) {
   const bool plane = i.dimension == 2;
   out += fmt::format("wall {}: {}{}{}\n", plane ? "edges" : "faces", i.wall_faces,
                      i.patches.empty() ? "" : ", by patch: ", list(i.patches));
+  if (i.inner_walls > 0) out += fmt::format("inner walls: {}, each one of these from both sides\n", i.inner_walls);
   for (const auto& [name, p] : i.patch_places) {
     out += fmt::format("patch {}: {} {:.6g}, centre ({:.6g}, {:.6g}, {:.6g})\n", name, plane ? "length" : "area",
                        p.size, p.centre.x, p.centre.y, p.centre.z);

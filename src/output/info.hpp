@@ -38,7 +38,8 @@ struct MeshInfo {
   std::map<std::string, PatchPlace> patch_places;
   std::size_t free_cells = 0;
   std::size_t wall_faces = 0;
-  std::size_t shapes = 0;  ///< kinds of cell that the map distinguishes
+  std::size_t inner_walls = 0;  ///< of these, pairs with a cell on both sides (inner_walls())
+  std::size_t shapes = 0;       ///< kinds of cell that the map distinguishes
   std::uint64_t simplices = 0;
   std::size_t steiner_points = 0;  ///< added if a cell needs one
   Vec3 low, high;                  ///< of the points

@@ -121,6 +121,19 @@ Reconnect reconnect(TomlTable& t) {
   return r;
 }
 
+// A valve is cells, or walls without thickness.
+void read_valve(TomlTable& t, EventScene& scene, bool opens) {
+  using Valve = decltype(scene.event.what);
+  const bool of_cells = t.get("region", scene.region);
+  const bool of_walls = t.get("patch", scene.patch);
+  if (of_cells == of_walls)
+    t.fail("kind", "give either region = \"NAME\", whose cells open or close, or patch = \"NAME\"");
+  if (of_cells)
+    scene.event.what = opens ? Valve{OpenCells{}} : Valve{CloseCells{}};
+  else
+    scene.event.what = opens ? Valve{OpenWalls{}} : Valve{CloseWalls{}};
+}
+
 }  // namespace
 
 EventScene read_event(TomlTable& t) {
@@ -145,14 +158,7 @@ EventScene read_event(TomlTable& t) {
       t.get("patch", scene.patch);
       break;
     case EventKind::open:
-    case EventKind::close:
-      if (kind == EventKind::open)
-        scene.event.what = OpenCells{};
-      else
-        scene.event.what = CloseCells{};
-      t.require("region", "the region of the mesh whose cells open or close");
-      t.get("region", scene.region);
-      break;
+    case EventKind::close: read_valve(t, scene, kind == EventKind::open); break;
   }
   t.get("stranded", scene.event.orphaned,
         {{"move", OrphanPolicy::relocate}, {"stay", OrphanPolicy::hold}, {"absorb", OrphanPolicy::absorb}});

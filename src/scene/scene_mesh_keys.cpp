@@ -233,6 +233,7 @@ EnvironmentScene read_environment(TomlTable table, const std::filesystem::path& 
   table.get("linearise", scene.linearise);
   table.get("skip_bad_cells", scene.skip_bad_cells);
   if (table.has("free")) read_free(table.table("free"), scene);
+  table.get("walls", scene.walls);
   if (table.is_table("patches")) {
     read_patches(table.table("patches"), scene);
   } else if (std::vector<std::string> names; table.get("patches", names)) {

@@ -80,6 +80,7 @@ void finish_piece(MeshData& mesh, const EnvironmentScene& scene, Ranks& ranks) {
     for (Vec3& x : mesh.points) x *= scene.scale;
   }
   select_free(mesh, scene, ranks);
+  select_walls(mesh, scene.walls);
   if (const auto* names = std::get_if<std::vector<std::string>>(&scene.patches)) keep_patches(mesh, *names);
 }
 

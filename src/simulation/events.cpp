@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -97,6 +98,31 @@ class EventRun {
 
   void make(const OpenCells& what) { report_.cells_opened = set_free(what.cells, true); }
   void make(const CloseCells& what) { report_.cells_blocked = set_free(what.cells, false); }
+
+  void make(const OpenWalls& what) {
+    std::vector<CellFace> faces = inner_walls(complex().map());
+    std::erase_if(faces, [&](CellFace f) { return complex().map().patch(f) != what.patch; });
+    change_walls(faces, what.patch, [&](ComplexEdit& e) { remove_walls(e.topology(), faces); });
+  }
+
+  void make(const CloseWalls& what) {
+    const CombinatorialMap& map = complex().map();
+    std::vector<CellFace> faces;
+    for (const Cell c : map.cells()) {
+      const std::size_t count = map.shape(c).face_count();
+      for (std::uint16_t f = 0; f < count; ++f) {
+        if (map.patch({c, f}) == what.patch && map.opposite({c, f}).valid()) faces.push_back({c, f});
+      }
+    }
+    change_walls(faces, what.patch, [&](ComplexEdit& e) { set_walls(e.topology(), faces, what.patch); });
+  }
+
+  void change_walls(std::span<const CellFace> faces, Patch patch, const std::function<void(ComplexEdit&)>& change) {
+    if (faces.empty())
+      throw EditRefused(fmt::format("the patch '{}' has no faces between two cells to {}",
+                                    complex().map().patch_names()[patch.value], name_of(report_.kind)));
+    note(edit(change));
+  }
 
   // Returns how many cells changed.
   std::uint64_t set_free(std::vector<std::uint32_t> sources, bool free) {

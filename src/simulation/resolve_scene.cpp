@@ -106,6 +106,10 @@ std::vector<Event> events_of(const Scene& scene, const MeshData& mesh, const Com
       if (open != nullptr) open->cells = cells_of_region(mesh, e.region);
       if (close != nullptr) close->cells = cells_of_region(mesh, e.region);
     }
+    auto* open_walls = std::get_if<OpenWalls>(&events.back().what);
+    auto* close_walls = std::get_if<CloseWalls>(&events.back().what);
+    if (open_walls != nullptr && !e.patch.empty()) open_walls->patch = map.patch(e.patch);
+    if (close_walls != nullptr && !e.patch.empty()) close_walls->patch = map.patch(e.patch);
     auto* reconnect = std::get_if<Reconnect>(&events.back().what);
     if (reconnect != nullptr && !e.patch.empty()) reconnect->options.side = map.patch(e.patch);
   }

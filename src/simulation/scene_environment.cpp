@@ -65,6 +65,7 @@ MeshData generated_mesh(const MeshSource& source) { return std::visit(Generator{
 void select_cells_and_patches(MeshData& mesh, const EnvironmentScene& scene) {
   if (const auto* by_region = std::get_if<FreeRegions>(&scene.free)) select_free_regions(mesh, by_region->regions);
   if (const auto* by_value = std::get_if<FreeValues>(&scene.free)) select_free_by_value(mesh, *by_value);
+  select_walls(mesh, scene.walls);
   if (const auto* names = std::get_if<std::vector<std::string>>(&scene.patches)) select_patches(mesh, *names);
   if (const auto* angle = std::get_if<PatchAngle>(&scene.patches)) divide_walls(mesh, angle->degrees);
 }

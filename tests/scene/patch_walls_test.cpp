@@ -6,6 +6,7 @@
 #include <string>
 
 #include "dartcast/generators.hpp"
+#include "dartcast/map_edits.hpp"
 #include "dartcast/mesh_files.hpp"
 #include "dartcast/scene_file.hpp"
 #include "dartcast/simulation.hpp"
@@ -42,10 +43,19 @@ TEST(PatchWalls, APatchThatIsNamedHasAWall) {
     const std::string blocked =
         std::regex_replace(text, std::regex("'a.vtu'\n"), "'a.vtu'\nfree = { region = ['left'] }\n");
     EXPECT_NO_THROW(const Simulation s(load_scene_files(scene(blocked)).scene)) << blocked;
+    const std::string walls = std::regex_replace(text, std::regex("'a.vtu'\n"), "'a.vtu'\nwalls = ['membrane']\n");
+    const LoadedScene inner = load_scene_files(scene(walls));
+    EXPECT_TRUE(inner.warnings.empty());
+    const Simulation s(inner.scene);
+    const std::vector<CellFace> sides = inner_walls(s.environment().map());
+    ASSERT_EQ(sides.size(), 2U);
+    for (const CellFace f : sides) EXPECT_EQ(s.environment().map().patch(f), s.environment().map().patch("membrane"));
   }
   test::expect_parts(
       test::error_text([&] { load_scene_files(scene(environment + "[contact.patch.nothing]\nresponse = 'stick'\n")); }),
       {"nothing", "no cell has a face of it"});
+  test::expect_parts(test::error_text([&] { load_scene_files(scene(environment + "walls = ['skin']\n")); }),
+                     {"no patch 'skin'", "membrane"});
   const LoadedScene passed = load_scene_files(scene(environment));
   ASSERT_EQ(passed.warnings.size(), 1U);
   EXPECT_EQ(passed.warnings[0].kind, "inner_faces");

@@ -210,9 +210,21 @@ TEST(SceneFile, AValveIsARegion) {
   EXPECT_EQ(s.events[1].event.orphaned, OrphanPolicy::hold);
 }
 
+TEST(SceneFile, AValveMayBeAPatch) {
+  const Scene s = parse_scene(box +
+                                  "walls = ['leaflet']\n[[event]]\nat = 2.0\nkind = 'close'\npatch = 'leaflet'\n"
+                                  "[[event]]\nat = 1.0\nkind = 'open'\npatch = 'leaflet'\n",
+                              "folder/scene.toml");
+  EXPECT_EQ(s.environment.walls, std::vector<std::string>{"leaflet"});
+  ASSERT_EQ(s.events.size(), 2U);
+  EXPECT_TRUE(std::holds_alternative<OpenWalls>(s.events[0].event.what));
+  EXPECT_TRUE(std::holds_alternative<CloseWalls>(s.events[1].event.what));
+  EXPECT_EQ(s.events[1].patch, "leaflet");
+}
+
 TEST(SceneFile, EventsThatCannotBeSayWhy) {
-  expect_error(box + "[[event]]\nat = 1.0\nkind = 'open'\n", "3", "region");
-  expect_error(box + "[[event]]\nat = 1.0\nkind = 'open'\nregion = 'a'\npatch = 'b'\n", "7", "patch");
+  expect_error(box + "[[event]]\nat = 1.0\nkind = 'open'\n", "5", "region");
+  expect_error(box + "[[event]]\nat = 1.0\nkind = 'open'\nregion = 'a'\npatch = 'b'\n", "5", "patch");
   expect_error(box + "[[event]]\nat = 1.0\nkind = 'sew'\n", "5", "one of");
   expect_error(box + "[[event]]\nkind = 'cut'\n", "3", "at");
   expect_error(box +

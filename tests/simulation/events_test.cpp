@@ -9,9 +9,11 @@
 #include "dartcast/audit.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
+#include "dartcast/map_edits.hpp"
 #include "dartcast/mesh_selection.hpp"
 #include "dartcast/simulation.hpp"
 #include "dartcast/validity.hpp"
+#include "mesh/cell_types.hpp"
 #include "support/expectations.hpp"
 #include "support/particle_checks.hpp"
 #include "support/tier.hpp"
@@ -386,6 +388,71 @@ INSTANTIATE_TEST_SUITE_P(Policies, Valve,
                          testing::Combine(testing::Values(2U, 3U),
                                           testing::Values(OrphanPolicy::relocate, OrphanPolicy::hold,
                                                           OrphanPolicy::absorb)));
+
+// A membrane across a channel, which closes and opens: a named group of faces between free cells.
+MeshData membrane_mesh(unsigned dimension) {
+  MeshData mesh = valve_mesh(dimension);
+  mesh.patch_names[77] = "membrane";
+  const auto is_across = [&](std::span<const std::uint32_t> face) {
+    return std::all_of(face.begin(), face.end(), [&](std::uint32_t p) { return mesh.points[p].x == 6.0; });
+  };
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
+    if (mesh.regions[c] != 1) continue;
+    std::vector<std::vector<std::uint32_t>> across;
+    for_each_face(mesh, c, [&](std::span<const std::uint32_t> face) {
+      if (is_across(face)) across.emplace_back(face.begin(), face.end());
+    });
+    for (const auto& face : across) mesh.add_patch_face(face, 77);
+  }
+  return mesh;
+}
+
+class Membrane : public testing::TestWithParam<unsigned> {};
+
+TEST_P(Membrane, LetsThroughOnlyWhileItIsOpen) {
+  MeshData mesh = membrane_mesh(GetParam());
+  const std::size_t faces = GetParam() == 3 ? 9 : 3;
+  const std::vector<std::string> name = {"membrane"};
+  select_walls(mesh, name);
+  Environment environment(mesh);
+  const Patch membrane = environment.map().patch("membrane");
+  const std::vector<CellFace> sides = inner_walls(environment.map());
+  ASSERT_EQ(sides.size(), 2 * faces);
+  for (const CellFace f : sides) EXPECT_EQ(environment.map().patch(f), membrane);
+  Simulation simulation(environment, test::with_response(SimulationOptions{.dt = 0.05}, Reflect{1.0, 0.0}));
+  std::vector<Vec3> places;
+  std::vector<Vec3> velocities;
+  for (int i = 0; i < 200; ++i) {
+    places.push_back({0.5 + 0.025 * i, 0.3 + 0.012 * i, GetParam() == 3 ? 1.3 : 0.0});
+    velocities.push_back({2.0 + 0.01 * i, 0.4, 0.0});
+  }
+  simulation.add(places, velocities, std::vector<double>(200));
+  simulation.set_events({{5.0, OpenWalls{membrane}}, {6.0, OpenWalls{membrane}}, {10.0, CloseWalls{membrane}}});
+  const auto on_the_right = [&] {  // one on the membrane, too
+    const auto& states = simulation.particles().states();
+    return static_cast<std::size_t>(std::count_if(states.begin(), states.end(), [&](const ParticleState& s) {
+      return mesh.regions[environment.map().source(s.cell)] != 1;
+    }));
+  };
+  std::size_t passed = 0;
+  for (int i = 0; i < 300; ++i) {
+    simulation.step();
+    ASSERT_NO_FATAL_FAILURE(test::expect_audited(simulation.environment().complex(), simulation.particles()));
+    if (i < 100) ASSERT_EQ(on_the_right(), 0U) << "step " << i;
+    if (i == 200) passed = on_the_right();
+    if (i > 200) ASSERT_EQ(on_the_right(), passed) << "step " << i;
+  }
+  EXPECT_GT(passed, 10U);
+  EXPECT_LT(passed, 190U);
+  const auto& events = simulation.event_log().events;
+  ASSERT_EQ(events.size(), 3U);
+  EXPECT_EQ(events[0].cells_added, 2 * faces);
+  EXPECT_EQ(events[1].refused, "the patch 'membrane' has no faces between two cells to open");
+  EXPECT_EQ(events[2].cells_added, 2 * faces);
+  EXPECT_EQ(events[2].particles_moved, 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Dimensions, Membrane, testing::Values(2U, 3U));
 
 TEST(Events, CellsThatAreOpenStayOpen) {
   MeshData mesh = valve_mesh(3);
