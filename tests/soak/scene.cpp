@@ -124,6 +124,18 @@ Cell any_cell(const CombinatorialMap& map, Random& random) {
   return cells[random.below(static_cast<std::uint32_t>(cells.size()))];
 }
 
+// Walls on some faces between two cells.
+std::function<void(ComplexEdit&)> new_walls(const CombinatorialMap& map, Random& random) {
+  std::vector<CellFace> faces;
+  for (int i = 0; i < 12; ++i) {
+    const Cell c = any_cell(map, random);
+    const auto count = static_cast<std::uint32_t>(map.shape(c).face_count());
+    const CellFace f{c, static_cast<std::uint16_t>(random.below(count))};
+    if (map.opposite(f).valid()) faces.push_back(f);
+  }
+  return [faces](ComplexEdit& edit) { set_walls(edit.topology(), faces, Patch{}); };
+}
+
 std::function<void(ComplexEdit&)> single(const Environment& environment, test::EditKind kind, Random& random) {
   const CombinatorialMap& map = environment.map();
   const test::CellBag bag(map);
@@ -195,8 +207,15 @@ std::function<void(ComplexEdit&)> Editor::draw(const Environment& environment, s
                   std::array{test::EditKind::merge_cells, test::EditKind::merge_faces,
                              test::EditKind::merge_edges}[random.below(3)],
                   random);
-  if (kind == "open faces") return single(environment, test::EditKind::unsew, random);
-  if (kind == "sew") return single(environment, test::EditKind::sew, random);
+  if (kind == "open faces")
+    return random.below(2) == 0 ? single(environment, test::EditKind::unsew, random) : new_walls(map, random);
+  if (kind == "sew") {
+    const std::vector<CellFace> walls = inner_walls(map);
+    if (walls.empty() || random.below(2) == 0) return single(environment, test::EditKind::sew, random);
+    const std::size_t some = 2 * (1 + random.below(static_cast<std::uint32_t>(walls.size() / 2)));
+    return [sides = std::vector<CellFace>(walls.begin(), walls.begin() + static_cast<std::ptrdiff_t>(some))](
+               ComplexEdit& edit) { remove_walls(edit.topology(), sides); };
+  }
   if (kind == "split" || !space)
     return single(
         environment,
