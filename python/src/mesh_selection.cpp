@@ -50,6 +50,9 @@ void bind(py::module_& m) {
       "select_patches", [](MeshData& mesh, const Texts& names) { change(mesh, [&] { select_patches(mesh, names); }); },
       about("select_patches"));
   m.def(
+      "select_walls", [](MeshData& mesh, const Texts& names) { change(mesh, [&] { select_walls(mesh, names); }); },
+      about("select_walls"));
+  m.def(
       "divide_walls",
       [](MeshData& mesh, double degrees) {
         change(mesh, [&] {

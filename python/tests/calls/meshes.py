@@ -84,6 +84,8 @@ def of_selections() -> Calls:
         "select_free_values: refused": refused(lambda: dc.formats.select_free_values(mesh, "sort", [1.0])),
         "select_patches": lambda: dc.formats.select_patches(copy.copy(mesh), ["xmin"]),
         "select_patches: refused": refused(lambda: dc.formats.select_patches(mesh, ["inlet"])),
+        "select_walls": lambda: dc.formats.select_walls(copy.copy(mesh), []),
+        "select_walls: refused": refused(lambda: dc.formats.select_walls(mesh, ["nowhere"])),
         "divide_walls": lambda: dc.formats.divide_walls(copy.copy(mesh), 30.0),
         "divide_walls: refused": refused(lambda: dc.formats.divide_walls(dc.MeshData(POINTS, {"tetra": [[0, 2, 1, 3]]}), 30.0)),
         "decompose": lambda: dc.formats.decompose(rings), "decompose: refused": refused(lambda: dc.formats.decompose([])),

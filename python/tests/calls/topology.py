@@ -201,6 +201,12 @@ def of_transactions() -> Calls:
     def open_wall(t: dc.topology.Transaction) -> None:
         dc.topology.unsew(t, inner_face(t.map))
 
+    def close_and_open(t: dc.topology.Transaction) -> None:
+        dc.topology.set_walls(t, [inner_face(t.map)], 0)
+        walls = dc.topology.inner_walls(t.map)
+        assert len(walls) == 2
+        dc.topology.remove_walls(t, walls)
+
     return {
         "Transaction": lambda: dc.topology.Transaction(m),
         "Transaction: refused": undone(lambda t: refused(lambda: dc.topology.Transaction(m))()),
@@ -229,6 +235,11 @@ def of_transactions() -> Calls:
         "merge_edges: refused": refused_in(lambda t: dc.topology.merge_edges(t, (first(t.map), 0))),
         "sew: refused": refused_in(lambda t: dc.topology.sew(t, (first(t.map), 0), (first(t.map), 1))),
         "unsew": undone(open_wall), "unsew: refused": refused_in(lambda t: dc.topology.unsew(t, outer_face(t.map))),
+        "set_walls": undone(lambda t: dc.topology.set_walls(t, [inner_face(t.map)], 0)),
+        "set_walls: refused": refused_in(lambda t: dc.topology.set_walls(t, [outer_face(t.map)], 0)),
+        "inner_walls": lambda: dc.topology.inner_walls(m),
+        "remove_walls": undone(close_and_open),
+        "remove_walls: refused": refused_in(lambda t: dc.topology.remove_walls(t, [inner_face(t.map)])),
         "remove": undone(lambda t: dc.topology.remove(t, first(t.map))),
         "remove: refused": refused_in(lambda t: dc.topology.remove(t, 7)),
     }
