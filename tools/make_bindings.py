@@ -2,7 +2,7 @@
 """Writes what the Python bindings take from the public headers. Usage: make_bindings.py HEADERS OUT.
 
 OUT/docs.inl has a docstring for each name, OUT/enums.inl a conversion for each enumeration. OUT/rows.inl has the
-rows of structured arrays (ROWS). OUT/records_N.cpp bind the enumerations, constants and plain records, and functions
+rows of structured arrays (ROWS), OUT/members.inl the members of classes (CLASSES). OUT/records_N.cpp bind the enumerations, constants and plain records, and functions
 that need no more than their types (FUNCTIONS). A record is a struct whose members all can be read and set. Structs that need
 thought are in BY_HAND, and python/src binds them.
 """
@@ -62,19 +62,20 @@ ROWS = {
                       "normal sides displacement unused",
 }
 # Structs that Python cannot make or change, and their members that are structured arrays.
-READ_ONLY = {"CatheterCheckpoint": "", "SolidAudit": "", "SolidCheckpoint": "", "SolidStep": "contacts",
+READ_ONLY = {"CatheterCheckpoint": "", "MeshPart": "", "SolidAudit": "", "SolidCheckpoint": "", "SolidStep": "contacts",
              "SphereReport": "overlaps", "Statistics": "passages path_points", "UpdateReport": "orphaned"}
 # Functions that Python calls as they are, and methods and properties of records.
 FUNCTIONS = """
-    are_extents are_plane_extents bar_options bound_holds box_part box_tool capsule_tool carve cell_orbit check_mesh
-    check_surface check_threads decompose divide_into_simplices draft_of edge_orbit face_orbit filter_applies
-    generate_bar has_parts histogram_text inner_walls is_mass is_radius is_surface_file kind_of load_scene_files
-    max_threads merge_cells merge_edges merge_faces mesh_endings mesh_part mesh_surfaces open_faces
-    overlapping_clusters parse_scene partition plane_bound_holds plane_filter_applies plane_through read_mesh_part
-    read_scene read_surface read_valid_mesh remove_walls repair report_file sample_solid sample_surface sample_volume
-    set_walls sew solid_of_cells solid_of_polyline split_by_plane split_edge split_face summary_json summary_text surface_endings
-    trajectory_points unsew verdict_name version vertex_orbit writable_mesh_endings write_lagrangian
-    write_mesh_parts write_report write_wall_hits
+    a286c7c2 are_extents are_plane_extents bar_options bound_holds box_part box_tool capsule_tool carve cell_orbit
+    cells_of_region check_mesh check_surface check_threads decompose divide_into_simplices draft_of edge_orbit
+    face_orbit filter_applies generate_bar has_parts histogram_text in inner_walls is_mass is_radius is_surface_file
+    kind_of list load_scene_files make max_threads members merge_cells merge_edges merge_faces mesh_endings
+    mesh_part mesh_surfaces meshes open_faces overlapping_clusters parse_scene partition plane_bound_holds
+    plane_filter_applies plane_through read_mesh_part read_scene read_surface read_valid_mesh remove_walls repair
+    report_file sample_solid sample_surface sample_volume select_free_regions select_free_values select_patches
+    select_walls set_walls sew solid_of_cells solid_of_polyline split_by_plane split_edge split_face summary_json
+    summary_text surface_endings the trajectory_points unsew verdict_name version vertex_orbit writable_mesh_endings
+    write_lagrangian write_mesh_parts write_report write_wall_hits
     """.split()
 METHODS = """
     Audit::operator+= CollisionCounts::operator+= ComplexEditReport::now Counters::operator+= Finding::add
@@ -82,13 +83,122 @@ METHODS = """
     RunPlan::seconds StatisticsOptions::any StatisticsOptions::pathlines
     """.split()
 # Docstrings of those that say too little to have a comment.
-SAID = {"RigidMotion::velocity_at": "The velocity of the rigid motion at a point.", "RunPlan::seconds": "The time of a step, s.",
-        "ResidenceTimes::mean": "The mean, s; 0 where there is none.", "StatisticsOptions::any": "Whether anything is kept.",
-        "StatisticsOptions::pathlines": "Whether there are pathlines."}
+SAID = {
+    "RigidMotion::velocity_at": "The velocity of the rigid motion at a point.",
+    "RunPlan::seconds": "The time of a step, s.",
+    "ResidenceTimes::mean": "The mean, s; 0 where there is none.",
+    "StatisticsOptions::any": "Whether anything is kept.",
+    "StatisticsOptions::pathlines": "Whether there are pathlines.",
+    "Bodies::id": "The body's id.",
+    "Bodies::particle_count": "The number of its particles.",
+    "Bodies::energy": "Its energy, J.",
+    "Bodies::rigid_motion_of": "The rigid motion with its momentum.",
+    "Bodies::size": "The number of bodies.",
+    "Bodies::options": "A copy.",
+    "Bodies::steps": "Steps done.",
+    "Bodies::particles": "A copy of all particles, body by body.",
+    "Bodies::positions": "Of all particles, float64 (n, 3).",
+    "Bodies::masses": "float64 (n,).",
+    "Bodies::radii": "float64 (n,).",
+    "Bodies::statuses": "Of all particles, uint8 (n,): values of ParticleStatus.",
+    "Catheter::total_length": "Of the whole catheter, m.",
+    "Catheter::turned": "Turns so far, rad.",
+    "Catheter::entry": "Where it enters now.",
+    "Catheter::direction": "In which it enters now.",
+    "Catheter::options": "A copy.",
+    "Catheter::state_hash": "Of all its points.",
+    "Catheter::checkpoint": "The state, for restore().",
+    "CellComplex::previous_positions": "Positions before the last move(); equal to positions before the first.",
+    "CellComplex::previous_corners": "The positions of a simplex's corners before the last move: float64 (4, 3).",
+    "CellComplex::simplex_count": "The number of implicit simplices.",
+    "CellComplex::steiner_point_count": "The number of Steiner points.",
+    "CellComplex::invalid_cells": "Cells that no Steiner point made positive, as a list of InvalidCell.",
+    "CombinatorialMap::phi1": "The next dart of the face.",
+    "CombinatorialMap::phi_1": "The dart before it in the face.",
+    "CombinatorialMap::origin": "The vertex that the dart starts from.",
+    "CombinatorialMap::face": "The face of the dart.",
+    "CombinatorialMap::flat": "Marks that edits left at the dart.",
+    "CombinatorialMap::handle": "The handle of a cell. Raises InvalidArgument where there is no such cell.",
+    "CombinatorialMap::cells": "All cells, pool by pool: uint32 (n,).",
+    "CombinatorialMap::bytes": "Size in memory.",
+    "Environment::positions": "Positions of the mesh's points: float64 (n, 3), a read-only copy.",
+    "Environment::edit_count": "The number of edits so far.",
+    "Particles::size": "The number of particles.",
+    "SharedParticles::size": "The number of particles here.",
+    "SharedParticles::width": "The numbers of each particle.",
+    "SharedParticles::ids": "uint64 (n,), a read-only copy: in the order of adding, from 0.",
+    "Simulation::checkpoint": "All that the simulation goes on from.",
+    "Simulation::particles":
+        "A copy of the particles: a set of its own. For their positions alone: Simulation.positions.",
+    "Simulation::ids": "uint64 (n,).",
+    "Simulation::velocities": "float64 (n, 3).",
+    "Simulation::statuses": "uint8 (n,): values of ParticleStatus.",
+    "Simulation::contact_counts": "uint32 (n,).",
+    "Simulation::radii": "float64 (n,).",
+    "Simulation::bodies_step": "The last one.",
+    "Simulation::catheter_count": "The number of catheters.",
+    "Simulation::solids_step": "A copy of the last step of the solids.",
+    "Simulation::solid_summaries": "The solids, by number.",
+    "Simulation::catheter_summaries": "By the order of adding.",
+    "Simulation::statistics": "A copy of the statistics so far; empty where none are kept.",
+    "Simulation::statistics_options": "A copy.",
+    "Simulation::totals": "Sums over all steps so far: a copy.",
+    "Simulation::event_log": "A copy.",
+    "Simulation::options": "A copy.",
+    "Simulation::time": "s: steps times dt.",
+    "Simulation::steps": "Steps done.",
+    "Simulation::deforms": "Whether it has a deformation.",
+    "SolidSet::size": "The number of solids.",
+    "SolidSet::checkpoint": "The state, for restore().",
+    "Transaction::removed": "Removed cells, of those that existed at the last commit.",
+    "Transaction::merged": "Vertices that were merged into others, as a list of MergedVertex.",
+    "Transaction::created_count": "The number of vertices made since the last commit.",
+    "VectorField::steady": "Whether it has one sample.",
+}
 PROPERTIES = """
     Across::face Across::outer BodyEnergy::total FieldScene::given MeshReport::valid MeshReport::verdict
     RigidMotion::kinetic_energy SurfacePlace::kind Validity::valid
     """.split()
+#: Members of classes that python/src makes: methods, methods that take long and release Python's lock, properties.
+CLASSES = {
+    "Bodies": {"method": "add step update_after_edit checkpoint restore predicted_state id first_particle particle_count "
+        "fits surface energy rigid_motion_of audit state_hash",
+        "property": "size options steps particles positions masses radii body_of statuses counters"},
+    "Catheter": {"method": "frames audit state_hash step update_after_edit checkpoint restore",
+        "property": "inserted measured_length total_length turned entry direction particles options"},
+    "CellComplex": {"method": "vertices previous_corners",
+        "property": "positions previous_positions point_count simplex_count steiner_point_count bytes "
+        "invalid_cells"},
+    "CombinatorialMap": {"method": "phi1 phi_1 origin face flat handle may_touch_wall",
+        "long_method": "wall_face_count cells",
+        "property": "patch_names dimension vertex_count bytes"},
+    "ComplexEdit": {"method": "refused_cells"},
+    "Deformation": {"method": "add_pull"},
+    "Environment": {"method": "awaits_advance",
+        "long_method": "validity first_inversion",
+        "property": "positions edit_count last_edit"},
+    "Particles": {"method": "remove truncate reorder",
+        "long_method": "selected",
+        "property": "size"},
+    "SharedParticles": {"property": "size width ids"},
+    "SharedEnvironment": {"method": "move"},
+    "Simulation": {"method": "set_statistics add_body set_events set_remeshing set_adaptive_subdivision repair adapt step "
+        "checkpoint restore go_to",
+        "long_method": "totals_of_all alive body_summaries solid_summaries catheter_summaries energy audit "
+        "state_hash",
+        "property": "particles ids velocities statuses contact_counts radii bodies_step catheter_count "
+        "solids_step statistics statistics_options totals seconds_solids event_log options time steps "
+        "deforms"},
+    "SolidSet": {"method": "add remove update_after_edit set_inverse_masses restore checkpoint",
+        "long_method": "audit",
+        "property": "size positions first_vertices particles stuck"},
+    "WallHits": {"method": "update_after_edit by_patch"},
+    "Surface": {"method": "set_free place",
+        "property": "positions"},
+    "Transaction": {"method": "add_vertex set_free note_merged added removed marked merged",
+        "property": "created_count"},
+    "VectorField": {"property": "steady values rest"},
+}
 CONSTANTS_BY_HAND = {"cell_type_names", "deformation_kinds"}
 HEADERS_BY_HAND = {"storage.hpp"}  # C++ only
 FILES = 3
@@ -170,6 +280,17 @@ def rows() -> tuple[str, str]:
         text += f"inline {of}Row row_of(const {of}& x) {{\n  {of}Row r{{}};\n  fill(x, r);\n  return r;\n}}\n"
         known += f"  PYBIND11_NUMPY_DTYPE({of}Row, {', '.join(values)});\n"
     return text, f"void register_rows() {{\n{known}}}\n"
+
+
+def members() -> str:
+    """A function for each class that defines its members."""
+    text = ""
+    for of, kinds in CLASSES.items():
+        said = {name: SAID.get(f"{of}::{name}") for names in kinds.values() for name in names.split()}
+        lines = [f'  {kind}(c, "{name}", &{of}::{name}{f", {quoted(said[name])}" if said[name] else ""});\n'
+                 for kind, names in kinds.items() for name in names.split()]
+        text += f"template <class C>\nvoid members_of_{of}(C& c) {{\n{''.join(lines)}}}\n"
+    return text
 
 
 class Binder:
@@ -283,6 +404,7 @@ def main() -> int:
     write(out / "enums.inl", "".join(f"DARTCAST_ENUM({n.name})\n" for n in names if n.kind == "enum"))
     structs, known = rows()
     write(out / "rows.inl", structs)
+    write(out / "members.inl", members())
     write(out / "rows.cpp", f'#include "support/rows.hpp"\n\nnamespace dartcast::python {{\n{known}}}\n')
     for path, content in Binder(names).files(out).items():
         write(path, content)

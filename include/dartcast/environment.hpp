@@ -42,6 +42,10 @@ using ReplayHook = std::function<void(const StepReplay&)>;
 class Particles {
  public:
   Particles() noexcept;
+  /// A set with these states that belongs to no environment, for example from a file: it can be read and copied.
+  /// Environment::restored() makes one that moves. `weights`: held_weights() of each. Throws InvalidArgument if their
+  /// numbers differ. Its vertex_numbers() are 0xffffffff.
+  Particles(std::span<const ParticleState> states, std::span<const Weights> weights);
   Particles(const Particles& other);
   Particles(Particles&& other) noexcept;
   Particles& operator=(const Particles& other);

@@ -7,6 +7,7 @@ from typing import Any
 import numpy
 
 from ._core import MeshData
+from ._mesh import ORDER
 
 #: Cell data of meshio that gives regions and patches, in the order in which they are looked for.
 TAGS = ("region", "gmsh:physical", "medit:ref", "cell_tags")
@@ -109,12 +110,10 @@ def to_meshio(mesh: MeshData) -> Any:
     Gmsh. Raises ModuleNotFoundError where meshio is missing.
     """
     import meshio
-    order = {"tetra": 0, "hexahedron": 1, "wedge": 2, "pyramid": 3, "polyhedron": 4, "triangle": 5, "quad": 6,
-             "polygon": 7}
     blocks: list[tuple[str, Any]] = []
     numbers = []
     for name, cells in mesh.cells.items():
-        chosen = numpy.flatnonzero(mesh.types == order[name])
+        chosen = numpy.flatnonzero(mesh.types == ORDER[name])
         if isinstance(cells, numpy.ndarray):
             blocks.append((name, cells.astype(numpy.int64)))
             numbers.append(chosen)

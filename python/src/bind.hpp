@@ -7,7 +7,7 @@
 // In this order: a class comes before those that it is a default for.
 // clang-format off
 #define DARTCAST_PARTS(PART) PART(errors) PART(records) PART(mesh_data) PART(mesh_check) PART(mesh_files) \
-  PART(mesh_selection) PART(generators) PART(mesh_part) PART(predicates) PART(cell_shape) \
+  PART(mesh_selection) PART(generators) PART(predicates) PART(cell_shape) \
   PART(combinatorial_map) PART(map_edits) PART(cell_complex) PART(complex_edit) PART(cutting) PART(remeshing) \
   PART(validity) PART(particle_state) PART(step) PART(response) PART(environment) PART(audit) \
   PART(shared_environment) PART(spheres) PART(trajectory) PART(deformation) PART(vector_field) \

@@ -71,42 +71,15 @@ void bind_calls(Class& c) {
               "reflection without loss."));
   c.def("move_with", &move_with<Bodies>, about("Bodies::move_with", "positions: float64 (n, 3)."));
   c.def("apply_impulse", &apply_impulse, about("Bodies::apply_impulse"));
-  method(c, "add", &Bodies::add);
-  method(c, "step", &Bodies::step);
-  method(c, "update_after_edit", &Bodies::update_after_edit);
-  method(c, "checkpoint", &Bodies::checkpoint);
-  method(c, "restore", &Bodies::restore);
-}
-
-void bind_single(Class& c) {
-  method(c, "predicted_state", &Bodies::predicted_state);
-  method(c, "id", &Bodies::id, "The body's id.");
-  method(c, "first_particle", &Bodies::first_particle);
-  method(c, "particle_count", &Bodies::particle_count, "The number of its particles.");
-  method(c, "fits", &Bodies::fits);
-  method(c, "surface", &Bodies::surface);
-  method(c, "energy", &Bodies::energy, "Its energy, J.");
-  method(c, "rigid_motion_of", &Bodies::rigid_motion_of, "The rigid motion with its momentum.");
+  members_of_Bodies(c);
 }
 
 void bind_properties(Class& c) {
   c.def("__len__", calling<Handle>(&Bodies::size));
-  property(c, "size", &Bodies::size, "The number of bodies.");
   c.def_property_readonly(
       "environment", [](const Handle& self) { return self.environment; }, "The environment.");
-  property(c, "options", &Bodies::options, "A copy.");
-  property(c, "steps", &Bodies::steps, "Steps done.");
-  property(c, "particles", &Bodies::particles, "A copy of all particles, body by body.");
-  property(c, "positions", &Bodies::positions, "Of all particles, float64 (n, 3).");
   c.def_property("velocities", calling<Handle>(+[](const Bodies& b) { return b.velocities(); }), &set_velocities,
                  "Of all particles, float64 (n, 3): a copy. Set all of them for impulses between steps.");
-  property(c, "masses", &Bodies::masses, "float64 (n,).");
-  property(c, "radii", &Bodies::radii, "float64 (n,).");
-  property(c, "body_of", &Bodies::body_of);
-  property(c, "statuses", &Bodies::statuses, "Of all particles, uint8 (n,): values of ParticleStatus.");
-  property(c, "counters", &Bodies::counters);
-  method(c, "audit", &Bodies::audit);
-  method(c, "state_hash", &Bodies::state_hash);
 }
 
 }  // namespace
@@ -115,7 +88,6 @@ void bind(py::module_& m) {
   bodies_records::bind(m);
   Class bodies(m, "Bodies", doc("Bodies"));
   bind_calls(bodies);
-  bind_single(bodies);
   bind_properties(bodies);
 }
 

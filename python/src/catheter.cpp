@@ -29,7 +29,7 @@ std::shared_ptr<Handle> make_catheter(const std::shared_ptr<EnvironmentHandle>& 
 
 void bind_state(Class& c) {
   c.def("points", calling<Handle>(&Catheter::points), about("Catheter::points", "float64 (n, 3)."));
-  method(c, "frames", &Catheter::frames);
+  members_of_Catheter(c);
   c.def(
       "contacts",
       [](const Handle& self) {
@@ -37,28 +37,14 @@ void bind_state(Class& c) {
         return rows_of(self.solid->contacts());
       },
       about("Catheter::contacts", "A structured array, as SolidStep.contacts."));
-  property(c, "inserted", &Catheter::inserted);
-  property(c, "measured_length", &Catheter::measured_length);
-  property(c, "total_length", &Catheter::total_length, "Of the whole catheter, m.");
-  property(c, "turned", &Catheter::turned, "Turns so far, rad.");
-  property(c, "entry", &Catheter::entry, "Where it enters now.");
-  property(c, "direction", &Catheter::direction, "In which it enters now.");
   c.def_property_readonly(
       "environment", [](const Handle& self) { return self.environment; }, "The environment.");
-  property(c, "particles", &Catheter::particles);
-  property(c, "options", &Catheter::options, "A copy.");
-  method(c, "audit", &Catheter::audit);
-  method(c, "state_hash", &Catheter::state_hash, "Of all its points.");
 }
 
 void bind_class(py::module_& m) {
   Class c(m, "Catheter", doc("Catheter"));
   c.def(py::init(&make_catheter), py::arg("environment").none(false), py::arg("options"), doc("Catheter::Catheter"));
   c.def("move_with", &move_with<Catheter>, about("Catheter::move_with", "positions: float64 (n, 3)."));
-  method(c, "step", &Catheter::step);
-  method(c, "update_after_edit", &Catheter::update_after_edit);
-  method(c, "checkpoint", &Catheter::checkpoint, "The state, for restore().");
-  method(c, "restore", &Catheter::restore);
   bind_state(c);
 }
 

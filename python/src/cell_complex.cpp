@@ -38,9 +38,7 @@ void move(const ComplexHandle& h, const Typed<"Points">& given) {
 }
 
 void bind_positions(Class& c) {
-  property(c, "positions", &CellComplex::positions);
-  property(c, "previous_positions", &CellComplex::previous_positions,
-           "Positions before the last move(); equal to positions before the first.");
+  members_of_CellComplex(c);
   c.def("move", &move, py::arg("points"),
         "Gives the points new positions: float64 (point_count, 3). Steiner points follow. No vertex is checked: see "
         "check_validity(). Raises InvalidArgument where the number is another, or the complex belongs to an "
@@ -54,21 +52,9 @@ void bind_positions(Class& c) {
 }
 
 void bind_simplices(Class& c) {
-  method(c, "vertices", &CellComplex::vertices);
   c.def("corners",
         calling<ComplexHandle>(static_cast<Corners (CellComplex::*)(SimplexId) const>(&CellComplex::corners)),
         py::arg("s"), "The positions of a simplex's corners: float64 (4, 3).");
-  method(c, "previous_corners", &CellComplex::previous_corners,
-         "The positions of a simplex's corners before the last move: float64 (4, 3).");
-}
-
-void bind_sizes(Class& c) {
-  property(c, "point_count", &CellComplex::point_count);
-  property(c, "simplex_count", &CellComplex::simplex_count, "The number of implicit simplices.");
-  property(c, "steiner_point_count", &CellComplex::steiner_point_count, "The number of Steiner points.");
-  property(c, "bytes", &CellComplex::bytes);
-  property(c, "invalid_cells", &CellComplex::invalid_cells,
-           "Cells that no Steiner point made positive, as a list of InvalidCell.");
 }
 
 Typed<"MeshData or tuple[MeshData, NDArray[uint32]]"> mesh_of(const ComplexHandle& h, bool with_vertices) {
@@ -100,7 +86,6 @@ void bind(py::module_& m) {
       "The map. It can be read; ComplexEdit changes it.");
   bind_positions(c);
   bind_simplices(c);
-  bind_sizes(c);
   c.def("__copy__", &copy_of);
   c.def("__deepcopy__", [](const ComplexHandle& h, const py::dict& /*memo*/) { return copy_of(h); });
   m.def("to_mesh", &mesh_of, py::arg("complex"), py::arg("with_vertices") = false,

@@ -88,17 +88,13 @@ void bind_view(py::module_& m) {
 }
 
 void bind_darts(Class& c) {
-  method(c, "phi1", &Map::phi1, "The next dart of the face.");
-  method(c, "phi_1", &Map::phi_1, "The dart before it in the face.");
+  members_of_CombinatorialMap(c);
   method(
       c, "phi2", +[](const Map& map, Dart d) { return or_none(map.phi2(d)); });
   method(
       c, "phi3", +[](const Map& map, Dart d) { return or_none(map.phi3(d)); });
   method(
       c, "alpha1", +[](const Map& map, Dart d) { return or_none(map.alpha1(d)); });
-  method(c, "origin", &Map::origin, "The vertex that the dart starts from.");
-  method(c, "face", &Map::face, "The face of the dart.");
-  method(c, "flat", &Map::flat, "Marks that edits left at the dart.");
 }
 
 void bind_faces(Class& c) {
@@ -110,8 +106,6 @@ void bind_faces(Class& c) {
         doc("CombinatorialMap::patch"));
   c.def("patch", calling<MapHandle>(+[](const Map& map, std::string name) { return map.patch(name); }),
         py::arg("name"));
-  property(c, "patch_names", &Map::patch_names);
-  long_method(c, "wall_face_count", &Map::wall_face_count);
 }
 
 // One question about one cell, or about an array of cells.
@@ -166,7 +160,6 @@ void bind_cells(Class& c) {
       "contains",
       [](const MapHandle& h, Cell cell) { return read(h, [&](const Map& map) { return map.contains(cell); }); },
       py::arg("c"), "Whether there is such a cell. Of a CellHandle: whether it is still the same cell.");
-  method(c, "handle", &Map::handle, "The handle of a cell. Raises InvalidArgument where there is no such cell.");
   def_of_cells<std::uint8_t>(c, "type", "The CellType of a cell.",
                              [](const Map& map, Cell cell) { return map.type(cell); });
   def_of_cells<std::uint32_t>(c, "source", doc("CombinatorialMap::source"),
@@ -175,7 +168,6 @@ void bind_cells(Class& c) {
                      [](const Map& map, Cell cell) { return map.is_free(cell); });
   def_of_cells<bool>(c, "has_flat", doc("CombinatorialMap::has_flat"),
                      [](const Map& map, Cell cell) { return map.has_flat(cell); });
-  long_method(c, "cells", &Map::cells, "All cells, pool by pool: uint32 (n,).");
   c.def(
       "set_free",
       [](const MapHandle& h, Cell cell, bool free) {
@@ -188,7 +180,6 @@ void bind_cells(Class& c) {
 }
 
 void bind_sizes(Class& c) {
-  property(c, "dimension", &Map::dimension);
   c.def(
       "cell_count",
       [](const MapHandle& h, std::optional<std::uint32_t> pool) {
@@ -207,13 +198,10 @@ void bind_sizes(Class& c) {
   };
   of_pool("slot_count", &Map::slot_count);
   of_pool("type_of", &Map::type_of);
-  property(c, "vertex_count", &Map::vertex_count);
   c.def(
       "is_vertex",
       [](const MapHandle& h, Vertex v) { return read(h, [&](const Map& map) { return map.is_vertex(v); }); },
       about("CombinatorialMap::is_vertex"));
-  method(c, "may_touch_wall", &Map::may_touch_wall);
-  property(c, "bytes", &Map::bytes, "Size in memory.");
 }
 
 // Two maps, or one map twice.

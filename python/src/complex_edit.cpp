@@ -87,7 +87,7 @@ void bind_ends(Class& c) {
       py::arg("to"),
       "Undoes everything after the savepoint. Raises InvalidArgument where that is none of this edit, or was itself "
       "undone.");
-  method(c, "refused_cells", &ComplexEdit::refused_cells);
+  members_of_ComplexEdit(c);
   c.def("commit", &commit,
         about("ComplexEdit::commit",
               "Raises InvalidArgument in an edit of an environment: that commits it when the function returns."));

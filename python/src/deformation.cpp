@@ -74,7 +74,7 @@ void bind(py::module_& m) {
       "check_plane", [](DeformationHandle& h) { change(h, [](Deformation& d) { d.check_plane(); }); },
       doc("Deformation::check_plane"));
   c.def("update_after_edit", &update_after_edit, about("Deformation::update_after_edit"));
-  method(c, "add_pull", &Deformation::add_pull);
+  members_of_Deformation(c);
   c.def(
       "load_frames", [](DeformationHandle& h, double time) { change(h, [&](Deformation& d) { d.load_frames(time); }); },
       about("Deformation::load_frames"));

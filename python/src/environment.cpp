@@ -74,8 +74,7 @@ void bind_parts(EnvironmentClass& c) {
         return map;
       },
       "The combinatorial map. It can be read; edit() changes it.");
-  property(c, "positions", &Environment::positions,
-           "Positions of the mesh's points: float64 (n, 3), a read-only copy.");
+  members_of_Environment(c);
   c.def_property(
       "threads", calling<EnvironmentHandle>(&Environment::threads),
       [](const EnvironmentHandle& h, Threads threads) {
@@ -86,8 +85,6 @@ void bind_parts(EnvironmentClass& c) {
       },
       "The number of threads that calls use; 0: all of the machine. Results never depend on it. Setting it raises "
       "Error, nothing changed, as check_threads().");
-  property(c, "edit_count", &Environment::edit_count, "The number of edits so far.");
-  property(c, "last_edit", &Environment::last_edit);
 }
 
 Typed<"Location or Records"> locate(const EnvironmentHandle& h, const Typed<"Vector or Points">& x) {
@@ -144,8 +141,6 @@ void bind_queries(EnvironmentClass& c) {
         about("Environment::locate",
               "x: one point, or float64 (n, 3). Returns a Location; or a structured array: place, kind, simplex, dart, "
               "cell, dart_cell. NONE stands for no cell."));
-  long_method(c, "validity", &Environment::validity);
-  method(c, "awaits_advance", &Environment::awaits_advance);
   c.def(
       "check_advance",
       [](const EnvironmentHandle& h, const ParticlesHandle& p, const StepOptions& options, const std::string& caller) {

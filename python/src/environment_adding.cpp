@@ -1,6 +1,5 @@
 // Binds dartcast/environment.hpp: particles that are added, saved and restored.
 #include <algorithm>
-#include <cstring>
 
 #include "bind.hpp"
 #include "dartcast/simulation.hpp"
@@ -64,18 +63,6 @@ ParticlesPointer added_random(const EnvironmentHandle& h, std::size_t count, std
   const py::gil_scoped_release release;
   add_random(e, made->particles, count, seed);
   return made;
-}
-
-std::vector<Weights> weights_of(const py::object& given, std::size_t count) {
-  std::vector<Weights> weights(count);
-  if (given.is_none()) return weights;
-  const bool right = py::isinstance<py::array_t<double, py::array::c_style>>(given) &&
-                     py::reinterpret_borrow<py::array>(given).ndim() == 2 &&
-                     py::reinterpret_borrow<py::array>(given).shape(1) == 4 &&
-                     py::reinterpret_borrow<py::array>(given).shape(0) == static_cast<py::ssize_t>(count);
-  if (!right) refuse_array(given, "weights", "float64 (n, 4), one row for each state", "Particles.held_weights()");
-  if (count > 0) std::memcpy(weights.data(), py::reinterpret_borrow<py::array>(given).data(), count * sizeof(Weights));
-  return weights;
 }
 
 ParticlesPointer restored(const EnvironmentHandle& h, const Typed<"Records">& given,

@@ -129,7 +129,6 @@ void bind(py::module_& m, EnvironmentClass& c) {
         "must then be advanced once, or update_after_edit() an edit made after this move, before the next move. "
         "advance() takes targets relative to positions before the move. Raises InvalidArgument, nothing moved, where "
         "the number does not match, or in the plane a z is not 0.");
-  long_method(c, "first_inversion", &Environment::first_inversion);
   c.def("move_until_inverted", &move_until_inverted, about("Environment::move_until_inverted"));
   c.def("edit", &edit, about("Environment::edit", "make(edit): gets a ComplexEdit, which is open until it returns."));
   c.def("update_after_edit", &update_after_edit, about("Environment::update_after_edit"));

@@ -1,10 +1,9 @@
-// Binds dartcast/mesh_data.hpp. Each array of a mesh is an attribute: read, it is a read-only copy; set, it is copied.
+// Binds dartcast/mesh_data.hpp, but for the constructor and `cells`, which are in Python. Each array of a mesh is an attribute: read, it is a read-only copy; set, it is copied.
 #include "dartcast/mesh_data.hpp"
 
 #include "bind.hpp"
 #include "support/integers.hpp"
 #include "support/map_checks.hpp"
-#include "support/mesh_arrays.hpp"
 #include "support/meshes.hpp"
 #include "support/python.hpp"
 
@@ -13,20 +12,43 @@ namespace py = pybind11;
 namespace dartcast::python::mesh_data {
 namespace {
 
-constexpr const char* constructor_doc = R"(A mesh from arrays.
+// {name: values}: (n,) for one component, else (n, components). Where two arrays have one name the first is taken.
+py::dict arrays_by_name(const std::vector<DataArray>& arrays) {
+  py::dict named;
+  for (const DataArray& a : arrays) {
+    if (named.contains(a.name.c_str())) continue;
+    named[a.name.c_str()] =
+        a.components == 1 ? array_of(std::span<const double>(a.values)) : rows_of(a.values, a.components);
+  }
+  return named;
+}
 
-points: float64 (n, 3). cells: by the names of meshio's types, as a dict or a list of pairs: "tetra", "hexahedron",
-"wedge", "pyramid", "triangle" and "quad" are arrays (n, corners) of any integer dtype; "polyhedron" is a list of cells,
-each a list of faces; "polygon" is a list of cells, each a list of corners. A wedge may have the order of Gmsh or that
-of VTK: the one with a positive volume is taken.
+DataArray data_array(const std::string& name, const py::object& values, std::size_t count, const std::string& of) {
+  const std::string text = of + "_data['" + name + "']";
+  const auto a = py::array::ensure(values);
+  const bool right =
+      a && std::string("fiub").find(a.dtype().kind()) != std::string::npos && (a.ndim() == 1 || a.ndim() == 2);
+  if (!right) {
+    PyErr_Clear();
+    refuse_array(values, text.c_str(), "numbers (n,) or (n, components)", "numpy.asarray(x, dtype=float)");
+  }
+  const auto doubles = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(a);
+  if (doubles.shape(0) != static_cast<py::ssize_t>(count)) {
+    throw InvalidArgument(text + ": expected " + std::to_string(count) + " values, one for each " + of + "; got " +
+                          std::to_string(doubles.shape(0)));
+  }
+  const std::size_t components = doubles.ndim() == 1 ? 1 : static_cast<std::size_t>(doubles.shape(1));
+  if (components == 0) throw InvalidArgument(text + ": it has no components");
+  return {name, components, {doubles.data(), doubles.data() + doubles.size()}};
+}
 
-regions, free, and each array of cell_data: one value per cell, in the order of the cells, or a dict by type.
-region_names, patch_names: {tag: name}. patches: {name or tag: faces}, where faces are an array (n, corners), a dict of
-these by type, or a list of faces. A patch that is given by a name gets the next tag. point_data: {name: (n,) or
-(n, components)}.
-
-Raises TypeError for another dtype or shape, and InvalidArgument where a size does not match or a number is no point.
-check_and_repair() checks the rest.)";
+std::vector<DataArray> arrays_from(const py::dict& named, std::size_t count, const std::string& of) {
+  std::vector<DataArray> arrays;
+  for (const auto& [name, values] : named)
+    arrays.push_back(
+        data_array(py::str(name).cast<std::string>(), py::reinterpret_borrow<py::object>(values), count, of));
+  return arrays;
+}
 
 // An attribute that holds one array of numbers.
 template <class T>
@@ -121,14 +143,6 @@ void add_names_and_data(py::class_<MeshData, std::shared_ptr<MeshData>>& c) {
 void add_methods(py::class_<MeshData, std::shared_ptr<MeshData>>& c) {
   c.def_property_readonly("cell_count", &MeshData::cell_count, "The number of cells.");
   c.def_property_readonly("dimension", &MeshData::dimension, doc("MeshData::dimension"));
-  c.def_property_readonly(
-      "cells",
-      [](const MeshData& m) {
-        check_arrays(m);
-        return cells_by_type(m);
-      },
-      "The cells by type, as the constructor takes them. Raises InvalidArgument where the mesh's arrays contradict "
-      "each other.");
   c.def(
       "cell",
       [](const MeshData& m, std::size_t i) {
@@ -172,25 +186,6 @@ void add_methods(py::class_<MeshData, std::shared_ptr<MeshData>>& c) {
   c.def("__deepcopy__", [copy](const MeshData& m, const py::dict& /*memo*/) { return copy(m); });
 }
 
-// Attributes in the order of a pickle.
-constexpr std::array<const char*, 17> pickled = {
-    "points",       "types",       "offsets",       "connectivity", "source",       "regions",
-    "region_names", "patch_faces", "patch_offsets", "patch_tags",   "patch_source", "patch_names",
-    "patch_order",  "baffle_tags", "free",          "point_data",   "cell_data"};
-
-py::tuple state_of(const py::object& mesh) {
-  py::tuple state(pickled.size());
-  for (std::size_t i = 0; i < pickled.size(); ++i) state[i] = mesh.attr(pickled[i]);
-  return state;
-}
-
-MeshData from_state(const py::tuple& state) {
-  if (state.size() != pickled.size()) throw InvalidArgument("this is no pickle of a MeshData of this version");
-  const py::object mesh = py::cast(MeshData{});
-  for (std::size_t i = 0; i < pickled.size(); ++i) mesh.attr(pickled[i]) = state[i];
-  return mesh.cast<MeshData>();
-}
-
 }  // namespace
 
 void bind(py::module_& m) {
@@ -201,28 +196,16 @@ void bind(py::module_& m) {
       "dimension", [](CellType type) { return dimension(type); }, about("dimension"));
 
   py::class_<MeshData, std::shared_ptr<MeshData>> c(m, "MeshData", doc("MeshData"));
-  c.def(
-      py::init(
-          [](const Typed<"Points | None">& points,
-             const Typed<"Mapping[str, Any] | Sequence[tuple[str, Any]] | None">& cells, const Typed<"Any">& regions,
-             const Typed<"Mapping[Any, Any] | Sequence[tuple[Any, Any]] | None">& patches,
-             const Typed<"Mapping[int, str] | None">& region_names,
-             const Typed<"Mapping[int, str] | None">& patch_names, const Typed<"Any">& free,
-             const Typed<"Mapping[str, Any] | None">& point_data, const Typed<"Mapping[str, Any] | None">& cell_data) {
-            return mesh_from_arrays(
-                {points, cells, regions, region_names, patches, patch_names, free, point_data, cell_data});
-          }),
-      py::arg("points") = py::none(), py::arg("cells") = py::none(), py::kw_only(), py::arg("regions") = py::none(),
-      py::arg("patches") = py::none(), py::arg("region_names") = py::none(), py::arg("patch_names") = py::none(),
-      py::arg("free") = py::none(), py::arg("point_data") = py::none(), py::arg("cell_data") = py::none(),
-      constructor_doc);
+  c.def(py::init<>());
   add_arrays(c);
   add_names_and_data(c);
   add_methods(c);
-  c.def(py::pickle(&state_of, &from_state));
-  c.def("__reduce__", [](const py::object& mesh) {  // without it, protocols 0 and 1 would ask for a base class's state
-    return py::make_tuple(py::module_::import("copyreg").attr("__newobj__"), py::make_tuple(py::type::of(mesh)),
-                          state_of(mesh));
+  // For the constructor, which is in Python (python/dartcast/_mesh.py).
+  m.def("_check_arrays", &check_arrays);
+  m.def("_corners", [](const py::object& x, const std::string& name, std::size_t columns, std::size_t points) {
+    std::vector<std::uint32_t> corners;
+    append_integers(x, name, columns, corners, static_cast<std::int64_t>(points));
+    return array_of(std::move(corners));
   });
 }
 

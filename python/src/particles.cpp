@@ -90,10 +90,7 @@ void bind_columns(Class& c) {
 }
 
 void bind_changes(Class& c) {
-  method(c, "remove", &Particles::remove);
-  method(c, "truncate", &Particles::truncate);
-  method(c, "reorder", &Particles::reorder);
-  long_method(c, "selected", &Particles::selected);
+  members_of_Particles(c);
   c.def(
       "replace",
       [](ParticlesHandle& h, const Typed<"Integers">& given, const ParticlesHandle& by) {
@@ -115,8 +112,13 @@ ParticlesPointer copy_of(const ParticlesHandle& h) {
 void bind(py::module_& m) {
   Class c(m, "Particles", doc("Particles"));
   c.def(py::init([] { return std::make_shared<ParticlesHandle>(); }), "An empty set.");
+  c.def(py::init([](const Typed<"Records">& states, const Typed<"Floats | None">& weights) {
+          return kept(Particles(states_of(states, "states"), weights_of(weights, py::len(states))));
+        }),
+        py::arg("states"), py::arg("weights") = py::none(),
+        "A set that belongs to no environment, as unpickled: Environment.restored() takes its states and "
+        "held_weights().");
   c.def("__len__", calling<ParticlesHandle>(&Particles::size));
-  property(c, "size", &Particles::size, "The number of particles.");
   c.def(
       "__getitem__",
       [](const ParticlesHandle& h, std::size_t i) {

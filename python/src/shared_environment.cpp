@@ -120,9 +120,7 @@ void bind_shared_particles(py::module_& m) {
             std::copy(values.begin(), values.end(), own.begin());
           },
           py::arg("particle"), py::arg("values"), "Sets the particle's numbers.");
-  property(c, "size", &SharedParticles::size, "The number of particles here.");
-  property(c, "width", &SharedParticles::width, "The numbers of each particle.");
-  property(c, "ids", &SharedParticles::ids, "uint64 (n,), a read-only copy: in the order of adding, from 0.");
+  members_of_SharedParticles(c);
   property(c, "positions", &positions_of, "float64 (n, 3), a read-only copy.");
   property(c, "cells", &cells_of, "The cell of each particle in the rank's own map: uint32 (n,), a read-only copy.");
 }
@@ -178,7 +176,7 @@ void bind(py::module_& m) {
                 e, p, [&](SharedEnvironment& own, SharedParticles& particles) { return own.add(particles, x); }));
           },
           about("SharedEnvironment::add", "Returns uint8 (n,) of Place."));
-  method(c, "move", &SharedEnvironment::move);
+  members_of_SharedEnvironment(c);
   bind_steps(c);
 }
 

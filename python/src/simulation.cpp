@@ -112,8 +112,7 @@ void bind_making(Class& simulation) {
       .def(py::init(&of_checkpoint), py::arg("scene"), py::arg("saved"), py::arg("threads") = Threads{},
            py::arg("after_edit") = py::none(), py::arg("ranks") = py::none(),
            py::arg("partition") = Partition::particles);
-  long_method(simulation, "totals_of_all", &Simulation::totals_of_all);
-  long_method(simulation, "alive", &Simulation::alive);
+  members_of_Simulation(simulation);
 }
 
 // A copy. Throws InvalidArgument where it was made for another complex, or has missed an edit.
@@ -155,7 +154,6 @@ void bind_motion(Class& simulation) {
             change(self, [&](Simulation& s) { s.pull(x, duration); });
           },
           about("Simulation::pull"));
-  method(simulation, "set_statistics", &Simulation::set_statistics);
 }
 
 void bind_adding(Class& simulation) {
@@ -173,13 +171,9 @@ void bind_adding(Class& simulation) {
            py::arg("user_data") = py::none(), doc("Simulation::add_random"))
       .def("add_inlet", &add_inlet, py::arg("patch"), py::arg("rate"), py::arg("velocity"), py::arg("radius") = 0.0,
            py::arg("user_data") = py::none(), doc("Simulation::add_inlet"));
-  method(simulation, "add_body", &Simulation::add_body);
 }
 
 void bind_changes(Class& simulation) {
-  method(simulation, "set_events", &Simulation::set_events);
-  method(simulation, "set_remeshing", &Simulation::set_remeshing);
-  method(simulation, "set_adaptive_subdivision", &Simulation::set_adaptive_subdivision);
   simulation
       .def(
           "set_after_edit",
@@ -190,15 +184,6 @@ void bind_changes(Class& simulation) {
           about("Simulation::set_after_edit",
                 "The function gets the environment, and can read it until it returns. None: nothing is called."))
       .def("edit", &edit, about("Simulation::edit"));
-  method(simulation, "repair", &Simulation::repair);
-  method(simulation, "adapt", &Simulation::adapt);
-}
-
-void bind_steps(Class& simulation) {
-  method(simulation, "step", &Simulation::step);
-  method(simulation, "checkpoint", &Simulation::checkpoint, "All that the simulation goes on from.");
-  method(simulation, "restore", &Simulation::restore);
-  method(simulation, "go_to", &Simulation::go_to);
 }
 
 }  // namespace
@@ -210,7 +195,6 @@ void bind(py::module_& m) {
   bind_motion(simulation);
   bind_adding(simulation);
   bind_changes(simulation);
-  bind_steps(simulation);
   simulation_state::bind(simulation);
 }
 

@@ -91,14 +91,7 @@ py::array_t<bool> held(const Handle& self) {
 }
 
 void bind_particles(Class& c) {
-  property(c, "particles", &Simulation::particles,
-           "A copy of the particles: a set of its own. For their positions alone: Simulation.positions.");
   property(c, "positions", &positions, "Of all particles, float64 (n, 3).");
-  property(c, "ids", &Simulation::ids, "uint64 (n,).");
-  property(c, "velocities", &Simulation::velocities, "float64 (n, 3).");
-  property(c, "statuses", &Simulation::statuses, "uint8 (n,): values of ParticleStatus.");
-  property(c, "contact_counts", &Simulation::contact_counts, "uint32 (n,).");
-  property(c, "radii", &Simulation::radii, "float64 (n,).");
   c.def_property_readonly("held", &held, about("Simulation::held", "bool (n,)."));
   c.def("user_data", &user_data, py::arg("particle"),
         about("Simulation::user_data", "A copy: set_user_data() changes them."));
@@ -110,41 +103,19 @@ void bind_solids(Class& c) {
   c.def_property_readonly(
       "bodies", &bodies,
       "The bodies; None where no body has been added. Set their velocities between steps; the simulation steps them.");
-  property(c, "bodies_step", &Simulation::bodies_step, "The last one.");
-  property(c, "catheter_count", &Simulation::catheter_count, "The number of catheters.");
   c.def("catheter", &catheter, py::arg("i"), "A catheter, which the simulation steps.");
   c.def("catheter_step", &catheter_step, py::arg("i"), doc("Simulation::catheter_step"));
-  long_method(c, "body_summaries", &Simulation::body_summaries);
   c.def_property_readonly("solids", &solids, "The solids, which the simulation moves; None where there are none.");
-  property(c, "solids_step", &Simulation::solids_step, "A copy of the last step of the solids.");
-  long_method(c, "solid_summaries", &Simulation::solid_summaries, "The solids, by number.");
-  long_method(c, "catheter_summaries", &Simulation::catheter_summaries, "By the order of adding.");
-}
-
-void bind_sums(Class& c) {
-  property(c, "statistics", &Simulation::statistics, "A copy of the statistics so far; empty where none are kept.");
-  property(c, "statistics_options", &Simulation::statistics_options, "A copy.");
-  property(c, "totals", &Simulation::totals, "Sums over all steps so far: a copy.");
-  property(c, "seconds_solids", &Simulation::seconds_solids);
-  property(c, "event_log", &Simulation::event_log, "A copy.");
-  long_method(c, "energy", &Simulation::energy);
-  long_method(c, "audit", &Simulation::audit);
-  long_method(c, "state_hash", &Simulation::state_hash);
 }
 
 }  // namespace
 
 void bind(Class& c) {
-  property(c, "options", &Simulation::options, "A copy.");
-  property(c, "time", &Simulation::time, "s: steps times dt.");
-  property(c, "steps", &Simulation::steps, "Steps done.");
   c.def_property_readonly(
       "environment", [](const Handle& self) { return self.environment; },
       "The environment. It can be read; the simulation alone changes it.");
-  property(c, "deforms", &Simulation::deforms, "Whether it has a deformation.");
   bind_particles(c);
   bind_solids(c);
-  bind_sums(c);
 }
 
 }  // namespace dartcast::python::simulation_state

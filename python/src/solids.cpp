@@ -115,24 +115,13 @@ void bind_changes(Class& c) {
   c.def(py::init(&make_set), py::arg("environment").none(false), doc("SolidSet::SolidSet"))
       .def("advance", &advance, about("SolidSet::advance", "targets: float64 (n, 3)."))
       .def("move_with", &move_with, about("SolidSet::move_with", "targets, positions: float64 (n, 3)."));
-  method(c, "add", &SolidSet::add);
-  method(c, "remove", &SolidSet::remove);
-  method(c, "update_after_edit", &SolidSet::update_after_edit);
-  method(c, "set_inverse_masses", &SolidSet::set_inverse_masses);
-  method(c, "restore", &SolidSet::restore);
+  members_of_SolidSet(c);
 }
 
 void bind_state(Class& c) {
   c.def("__len__", calling<Handle>(&SolidSet::size), "The number of solids.");
-  property(c, "size", &SolidSet::size, "The number of solids.");
-  property(c, "positions", &SolidSet::positions);
-  property(c, "first_vertices", &SolidSet::first_vertices);
-  property(c, "particles", &SolidSet::particles);
-  property(c, "stuck", &SolidSet::stuck);
   c.def_property_readonly(
       "environment", [](const Handle& self) { return self.environment; }, "The environment.");
-  method(c, "checkpoint", &SolidSet::checkpoint, "The state, for restore().");
-  long_method(c, "audit", &SolidSet::audit);
 }
 
 }  // namespace

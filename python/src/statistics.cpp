@@ -69,14 +69,13 @@ void bind_hits(py::module_& m) {
         hits.add(*h.environment, report.contacts);
       },
       py::arg("environment"), py::arg("report"), doc("WallHits::add"));
-  method(c, "update_after_edit", &WallHits::update_after_edit);
+  members_of_WallHits(c);
   c.def("of", &WallHits::of, py::arg("face"), "The hits of one face.");
   c.def(
       "faces", [](const WallHits& hits) { return rows_of(hits.faces()); },
       about("WallHits::faces", "A structured array (cell, face, patch, hits)."));
   c.def(
       "ended_by_patch", [](const WallHits& hits) { return hits.ended_by_patch(); }, doc("WallHits::ended_by_patch"));
-  method(c, "by_patch", &WallHits::by_patch);
   c.def(
       "restore",
       [](WallHits& hits, const EnvironmentHandle& h, const Typed<"Records">& faces, std::vector<std::uint64_t> ended) {

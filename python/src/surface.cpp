@@ -105,9 +105,7 @@ void bind_class(py::module_& m) {
            about("Surface::contains", "place: a SurfacePlace, or an array of places; then bool (n,)."))
       .def("point", &point,
            about("Surface::point", "place: a SurfacePlace, or an array of places; then float64 (n, 3)."));
-  property(c, "positions", &Surface::positions);
-  method(c, "set_free", &Surface::set_free);
-  method(c, "place", &Surface::place);
+  members_of_Surface(c);
 }
 
 }  // namespace

@@ -68,10 +68,8 @@ EditReport commit(const TransactionHandle& h) {
 }
 
 void bind_changes(Class& c) {
-  method(c, "add_vertex", &Transaction::add_vertex);
+  members_of_Transaction(c);
   c.def("replace", &replace, about("Transaction::replace"));
-  method(c, "set_free", &Transaction::set_free);
-  method(c, "note_merged", &Transaction::note_merged);
   c.def(
       "savepoint",
       [](const TransactionHandle& h) {
@@ -86,11 +84,6 @@ void bind_changes(Class& c) {
 }
 
 void bind_reads(Class& c) {
-  method(c, "added", &Transaction::added);
-  method(c, "removed", &Transaction::removed, "Removed cells, of those that existed at the last commit.");
-  method(c, "marked", &Transaction::marked);
-  method(c, "merged", &Transaction::merged, "Vertices that were merged into others, as a list of MergedVertex.");
-  property(c, "created_count", &Transaction::created_count, "The number of vertices made since the last commit.");
   c.def(
       "created",
       [](const TransactionHandle& h, std::size_t i) {

@@ -85,9 +85,7 @@ void bind_samples(py::module_& m) { m.def("field_samples", &field_samples, about
 void bind_members(py::class_<FieldHandle, FieldPointer>& c) {
   property(c, "frame", &VectorField::frame, doc("FieldFrame"));
   property(c, "place", &VectorField::place, doc("FieldPlace"));
-  property(c, "steady", &VectorField::steady, "Whether it has one sample.");
-  property(c, "values", &VectorField::values);
-  property(c, "rest", &VectorField::rest);
+  members_of_VectorField(c);
 }
 
 }  // namespace

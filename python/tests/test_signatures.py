@@ -9,6 +9,7 @@ import ast
 import inspect
 import pathlib
 import re
+import types
 from collections.abc import Iterator
 
 import dartcast
@@ -71,6 +72,12 @@ def of_module(message: str, name: str) -> Signature:
     return found
 
 
+def of_python(function: types.FunctionType) -> Signature:
+    """That of a function in Python."""
+    parameters = list(inspect.signature(function).parameters.values())[1:]
+    return {tuple(p.name for p in parameters): {p.name for p in parameters if p.default is not p.empty}}
+
+
 def of_stub(nodes: list[ast.FunctionDef]) -> Signature:
     """The signatures of all overloads of one function."""
     found: Signature = {}
@@ -95,7 +102,8 @@ def test_arguments_have_the_names_of_the_module() -> None:
             continue  # operators are called without names
         if name in MADE_BY_OPTIONS:
             continue
-        module = of_module(refusal(where, last), name)
+        own = vars(where).get(last)
+        module = of_python(own) if isinstance(own, types.FunctionType) else of_module(refusal(where, last), name)
         if module != of_stub(nodes):
             wrong.append(f"{name}: the module has {module}, the stub {of_stub(nodes)}")
     assert len(overloads) > 600 and not wrong, "\n".join(wrong)

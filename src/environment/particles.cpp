@@ -23,6 +23,13 @@ void check_indices(std::span<const std::uint32_t> which, std::size_t size, const
 }  // namespace
 
 Particles::Particles() noexcept = default;
+Particles::Particles(std::span<const ParticleState> states, std::span<const Weights> weights)
+    : states_(states.begin(), states.end()), details_(std::make_unique<Details>()) {
+  if (weights.size() != states.size())
+    throw InvalidArgument(fmt::format("Particles: {} weights for {} states", weights.size(), states.size()));
+  details_->weights.assign(weights.begin(), weights.end());
+  details_->cache.add_unknown(states.size());
+}
 Particles::Particles(const Particles& other)
     : states_(other.states_), details_(other.details_ ? std::make_unique<Details>(*other.details_) : nullptr) {}
 Particles::Particles(Particles&& other) noexcept = default;

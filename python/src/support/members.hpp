@@ -20,7 +20,7 @@
 #include <utility>
 #include <vector>
 
-#include "dartcast/bodies.hpp"
+#include "dartcast/dartcast.hpp"
 #include "support/docs.hpp"
 #include "support/edits.hpp"
 #include "support/ids.hpp"
@@ -94,6 +94,15 @@ struct Given<const MeshData&> {
   const MeshData& value;
   MeshUse use;
   Given(const From<MeshData>& from) : value((check_arrays(from.given), from.given)), use(from.given) {}
+};
+template <>
+struct Given<MeshData&> {
+  using Python = MeshData;
+  MeshData& value;
+  MeshUse use;
+  Given(const From<MeshData>& from) : value(const_cast<MeshData&>(from.given)), use(from.given, true) {
+    check_arrays(value);
+  }
 };
 template <class Object, class Handle>
 struct GivenInHandle {
@@ -280,5 +289,7 @@ template <class Function>
 void function(pybind11::module_& m, const char* name, Function f, std::string_view more = {}) {
   function(m, name, f, about(name, more));
 }
+
+#include "members.inl"
 
 }  // namespace dartcast::python

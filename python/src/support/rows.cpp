@@ -2,6 +2,7 @@
 #include "support/rows.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 namespace py = pybind11;
 
@@ -50,6 +51,18 @@ std::vector<ParticleState> states_of(const py::object& x, const char* name) {
     for (std::size_t k = 0; k < 3; ++k) s.touching[k] = {Cell{r.touching_cell[k]}, r.touching_face[k]};
   }
   return states;
+}
+
+std::vector<Weights> weights_of(const py::object& given, std::size_t count) {
+  std::vector<Weights> weights(count);
+  if (given.is_none()) return weights;
+  const bool right = py::isinstance<py::array_t<double, py::array::c_style>>(given) &&
+                     py::reinterpret_borrow<py::array>(given).ndim() == 2 &&
+                     py::reinterpret_borrow<py::array>(given).shape(1) == 4 &&
+                     py::reinterpret_borrow<py::array>(given).shape(0) == static_cast<py::ssize_t>(count);
+  if (!right) refuse_array(given, "weights", "float64 (n, 4), one row for each state", "Particles.held_weights()");
+  if (count > 0) std::memcpy(weights.data(), py::reinterpret_borrow<py::array>(given).data(), count * sizeof(Weights));
+  return weights;
 }
 
 }  // namespace dartcast::python

@@ -96,5 +96,7 @@ pybind11::array structured(const pybind11::object& x, const pybind11::dtype& wan
 
 /// States from an array as rows_of() makes it. Throws TypeError for another dtype.
 std::vector<ParticleState> states_of(const pybind11::object& x, const char* name);
+/// Weights from float64 (count, 4); None: no particle is held. Throws TypeError for another array.
+std::vector<Weights> weights_of(const pybind11::object& given, std::size_t count);
 
 }  // namespace dartcast::python

@@ -38,6 +38,8 @@ class ParticleCache {
 
   /// Adds a particle that is in this simplex.
   void add(const CellComplex& complex, SimplexId simplex, const Vec3& position);
+  /// Adds particles that are in no complex: of another one, or of none.
+  void add_unknown(std::size_t count) { vertices_.resize(vertices_.size() + count, {none, none, none, none}); }
   /// Particle i has this state now.
   void place(std::size_t i, const CellComplex& complex, const ParticleState& state);
   /// All particles may have other places in their simplices now.
@@ -56,6 +58,8 @@ class ParticleCache {
  private:
   friend class BatchStepper;
   friend class PartSteps;
+
+  static constexpr std::uint32_t none = 0xffffffffU;
 
   std::vector<VertexNumbers> vertices_;
   CacheKind kind_ = CacheKind::none;
