@@ -74,6 +74,7 @@ MODULES = {
 }
 IDS = "".join(f"from ._ids import {name} as {name}\n" for name in
               ("Cell", "CellFace", "CellHandle", "Dart", "Patch", "SimplexId", "Vertex"))
+MORE = {"topology": IDS, "formats": "from ._results import Frame as Frame\nfrom ._results import Run as Run\n"}
 NUMBERS = ("Cell", "Vertex", "Patch")
 PAIRS = ("Dart", "CellFace", "SimplexId", "CellHandle")
 #: What an argument may be, and what a result is.
@@ -298,7 +299,7 @@ class Stub:
                 names[next((m for m, (_, headers) in MODULES.items() if header[:-4] in headers.split()), "records")].append(name)
         return {module: f'"""{MODULES[module][0]} Written by tools/make_stub.py."""\nfrom ._core import (\n' +
                 textwrap.fill(", ".join(f"{name}@as@{name}" for name in sorted(found)), 118, initial_indent="    ",
-                              subsequent_indent="    ").replace("@", " ") + ")\n" + (IDS if module == "topology" else "")
+                              subsequent_indent="    ").replace("@", " ") + ")\n" + MORE.get(module, "")
                 for module, found in names.items()}
 
 

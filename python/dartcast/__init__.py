@@ -30,4 +30,6 @@ from . import formats as formats, predicates as predicates, records as records, 
 from ._meshio import from_meshio as from_meshio, to_meshio as to_meshio
 from ._ids import NONE as NONE
 from ._ranks import Ranks as Ranks, mpi_ranks as mpi_ranks
+from ._results import flat as flat, read_run as read_run
 from ._run import load_scene as load_scene, run as run, scene_text as scene_text
+from . import _display as _display

@@ -1,11 +1,15 @@
 """Scenes from files and dicts, and runs of them."""
 from __future__ import annotations
 
+import contextlib
 import enum
 import json
 import os
 import pathlib
-from collections.abc import Callable, Mapping
+import sys
+import time
+import warnings
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Optional, Union
 
 import numpy
@@ -13,6 +17,7 @@ import numpy
 from . import _core
 from ._ranks import Ranks
 
+Progress = Callable[[int, int], Optional[bool]]
 SceneLike = Union[str, "os.PathLike[str]", Mapping[str, Any], _core.Scene]
 
 
@@ -69,14 +74,42 @@ def _plain(scene: SceneLike) -> _core.Scene:
     return _core.read_scene(pathlib.Path(scene))
 
 
+@contextlib.contextmanager
+def _shown(progress: Union[bool, Progress, None]) -> Iterator[Optional[Progress]]:
+    """The function for run_scene(): that of the caller, or one that moves a bar."""
+    if progress is not True:
+        yield None if progress is False else progress
+        return
+    with warnings.catch_warnings():  # tqdm warns in notebooks that have no widgets, and shows a text
+        warnings.simplefilter("ignore")
+        try:
+            from tqdm.auto import tqdm
+        except ImportError:
+            tqdm = None
+    bar, last = tqdm(unit="step") if tqdm else None, 0.0
+
+    def show(done: int, all_: int) -> None:
+        nonlocal last
+        if bar is not None:
+            bar.total = all_
+            bar.update(done - bar.n)
+        elif done == all_ or time.monotonic() - last > 0.2:
+            last = time.monotonic()
+            print(f"\r{done:,} of {all_:,} steps ({done / all_:.0%})", end="", file=sys.stderr, flush=True)
+    try:
+        yield show
+    finally:
+        print(file=sys.stderr) if bar is None else bar.close()
+
+
 def run(scene: SceneLike, out: Union[str, "os.PathLike[str]", None] = None, *, threads: int = 0,
         steps: Optional[int] = None, seed: Optional[int] = None, audit: bool = False, resume: bool = False,
-        skip_bad_cells: bool = False, progress: Optional[Callable[[int, int], Optional[bool]]] = None,
+        skip_bad_cells: bool = False, progress: Union[bool, Progress, None] = None,
         max_memory: int = 0, ranks: Optional[Ranks] = None, partition: str = "particles") -> _core.Summary:
     """Runs a scene: a .toml file, a dict with the keys of docs/scene.md, or a Scene.
 
     out: the folder for frames and summary.json; None: nothing is written. The other arguments are those of RunOptions.
-    progress: see run_scene(). Ctrl-C ends the run between two steps, and resume=True goes on from there. ranks: the
+    progress: a function as in run_scene(); True: a bar of tqdm, or a line on stderr if tqdm is missing. Ctrl-C ends the run between two steps, and resume=True goes on from there. ranks: the
     processes that share the run, as mpi_ranks(); all call run() with the same arguments, and the first returns the
     summary of all. partition: "particles" or "cells". Raises as run_scene().
     """
@@ -84,4 +117,5 @@ def run(scene: SceneLike, out: Union[str, "os.PathLike[str]", None] = None, *, t
                                skip_bad_cells=skip_bad_cells, max_memory=max_memory, partition=partition)
     if out is not None:
         options.folder = pathlib.Path(out)
-    return _core.run_scene(_plain(scene), options, progress, ranks)
+    with _shown(progress) as show:
+        return _core.run_scene(_plain(scene), options, show, ranks)

@@ -33,3 +33,5 @@ from ._core import (
     writable_mesh_endings as writable_mesh_endings, write_bytes as write_bytes, write_lagrangian as write_lagrangian,
     write_mesh_parts as write_mesh_parts, write_pathlines as write_pathlines, write_report as write_report,
     write_wall_hits as write_wall_hits)
+from ._results import Frame as Frame
+from ._results import Run as Run

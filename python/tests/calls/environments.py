@@ -25,6 +25,7 @@ def of_making() -> Calls:
         "Environment": lambda: dc.Environment(mesh, threads=1),
         "Environment: free": lambda: dc.Environment(mesh, threads=1, free=["1"]),
         "Environment: refused": refused(lambda: dc.Environment(mesh, threads=1, free=["bone"])),
+        "Environment.__repr__": lambda: (repr(env), env._repr_html_()),
         "Environment.locate": lambda: env.locate([0.25, 0.25, 0.25]), "Environment.locate: many": lambda: env.locate(x),
         "Environment.locate: refused": refused(lambda: env.locate([np.nan, 0.0, 0.0])),
         "Environment.cast_rays": lambda: env.cast_rays(x, x), "Environment.cast_rays: cells": lambda: env.cast_rays(

@@ -45,8 +45,8 @@ def of_data() -> Calls:
         "MeshData.add_cell": add_cell, "MeshData.add_patch_face": add_patch_face,
         "MeshData.add_cell: refused": refused(add_cell_refused),
         "MeshData.__repr__": lambda: repr(mesh), "MeshData.__copy__": lambda: copy.copy(mesh),
-        "MeshData.__deepcopy__": lambda: copy.deepcopy(mesh), "MeshData.__getstate__": lambda: pickle.dumps(mesh),
-        "MeshData.__reduce__": lambda: mesh.__reduce__(), "MeshData.__setstate__": lambda: pickle.loads(pickle.dumps(mesh)),
+        "MeshData.__deepcopy__": lambda: copy.deepcopy(mesh),
+        "MeshData.__reduce__": lambda: pickle.loads(pickle.dumps(mesh)),
         "dimension": lambda: dc.formats.dimension("prism"), "dimension: refused": refused(lambda: dc.formats.dimension(8)),
     }
 

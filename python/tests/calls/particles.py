@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import copy
+import pickle
 
 import numpy as np
 
@@ -18,6 +19,11 @@ def of_sets() -> Calls:
     some = particles.selected([0, 2])
     return {
         "Particles": dc.Particles, "Particles.__len__": lambda: len(particles), "Particles.copy": particles.copy,
+        "Particles: of states": lambda: dc.Particles(particles.states, particles.held_weights()),
+        "Particles: refused": refused(lambda: dc.Particles(particles.states[:3], particles.held_weights())),
+        "Particles.__repr__": lambda: (repr(particles), particles._repr_html_()),
+        "Particles.__reduce__": lambda: pickle.loads(pickle.dumps(particles)),
+        "Particles.__iter__": lambda: list(particles), "Particles.__getitem__: some": lambda: particles[1:4],
         "Particles.__getitem__": lambda: particles[3], "Particles.__getitem__: refused": refused(lambda: particles[99]),
         "Particles.__copy__": lambda: copy.copy(particles), "Particles.__deepcopy__": lambda: copy.deepcopy(particles),
         "Particles.held_weights": particles.held_weights,
@@ -100,6 +106,7 @@ def of_responses() -> Calls:
         "slid: surface": lambda: dc.slid(contact, [1, 0, 2]),
         "reflected: refused": refused(lambda: dc.reflected("x", walls, 0.5, 0.1)),
         "StepReport.walls_of": lambda: report.walls_of(0),
+        "StepReport.__repr__": lambda: (repr(report), report._repr_html_()),
         "StepReport.earlier_walls_of": lambda: report.earlier_walls_of(0),
         "StepReport.walls_of: refused": refused(lambda: report.walls_of(99)),
     }
