@@ -66,16 +66,16 @@ READ_ONLY = {"CatheterCheckpoint": "", "MeshPart": "", "SolidAudit": "", "SolidC
              "SphereReport": "overlaps", "Statistics": "passages path_points", "UpdateReport": "orphaned"}
 # Functions that Python calls as they are, and methods and properties of records.
 FUNCTIONS = """
-    a286c7c2 are_extents are_plane_extents bar_options bound_holds box_part box_tool capsule_tool carve cell_orbit
+    are_extents are_plane_extents bar_options bound_holds box_part box_tool capsule_tool carve cell_orbit
     cells_of_region check_mesh check_surface check_threads decompose divide_into_simplices draft_of edge_orbit
-    face_orbit filter_applies generate_bar has_parts histogram_text in inner_walls is_mass is_radius is_surface_file
-    kind_of list load_scene_files make max_threads members merge_cells merge_edges merge_faces mesh_endings
-    mesh_part mesh_surfaces meshes open_faces overlapping_clusters parse_scene partition plane_bound_holds
-    plane_filter_applies plane_through read_mesh_part read_scene read_surface read_valid_mesh remove_walls repair
-    report_file sample_solid sample_surface sample_volume select_free_regions select_free_values select_patches
-    select_walls set_walls sew solid_of_cells solid_of_polyline split_by_plane split_edge split_face summary_json
-    summary_text surface_endings the trajectory_points unsew verdict_name version vertex_orbit writable_mesh_endings
-    write_lagrangian write_mesh_parts write_report write_wall_hits
+    face_orbit filter_applies generate_bar has_parts histogram_text inner_walls is_mass is_radius is_surface_file
+    kind_of load_scene_files max_threads merge_cells merge_edges merge_faces mesh_endings mesh_part mesh_surfaces
+    open_faces overlapping_clusters parse_scene partition plane_bound_holds plane_filter_applies plane_through
+    read_mesh_part read_scene read_surface read_valid_mesh remove_walls repair report_file sample_solid
+    sample_surface sample_volume select_free_regions select_free_values select_patches select_walls set_walls sew
+    solid_of_cells solid_of_polyline split_by_plane split_edge split_face summary_json summary_text surface_endings
+    trajectory_points unsew verdict_name version vertex_orbit writable_mesh_endings write_lagrangian
+    write_mesh_parts write_report write_wall_hits
     """.split()
 METHODS = """
     Audit::operator+= CollisionCounts::operator+= ComplexEditReport::now Counters::operator+= Finding::add

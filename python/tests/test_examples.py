@@ -1,8 +1,11 @@
-"""Every example runs, is short, and draws its picture."""
+"""Every example runs as a script, is short, and draws its picture; as a notebook one does, and all are turned into some."""
 from __future__ import annotations
 
+import ast
+import base64
 import os
 import pathlib
+import re
 import runpy
 import subprocess
 import sys
@@ -26,6 +29,46 @@ def test_example(script: pathlib.Path, tmp_path: pathlib.Path) -> None:
                           check=False, env=os.environ | {"MPLBACKEND": "agg"})
     assert done.returncode == 0, done.stderr
     assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+sys.path.insert(0, str(ROOT / "tools"))
+
+
+def test_every_example_is_a_notebook_of_the_same_statements() -> None:
+    import make_notebooks
+    for script in SCRIPTS:
+        text = script.read_text(encoding="utf-8")
+        cells = make_notebooks.notebook_of(text).cells
+        assert cells[0].source == "# " + ast.get_docstring(ast.parse(text)) and len(cells) > 2
+        assert not any("import" in cell.source for cell in cells[2:])
+        code = "\n".join(cell.source for cell in cells[1:])
+        statements = [ast.unparse(s) for s in ast.parse(text).body[1:]]
+        left_out = [s for s in statements if s not in [ast.unparse(t) for t in ast.parse(code).body]]
+        assert all("savefig(sys.argv" in s or s == "import sys" for s in left_out) and "sys.argv" not in code, script.name
+
+
+def test_a_notebook_shows_the_run_and_its_figures(tmp_path: pathlib.Path) -> None:
+    """The one whose cells show objects. The code of all is that of the scripts, which run in the test above."""
+    done = subprocess.run([sys.executable, str(ROOT / "tools" / "make_notebooks.py"), str(tmp_path),
+                           str(ROOT / "examples" / "python" / "results.py")], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    page = (tmp_path / "results.html").read_text(encoding="utf-8")
+    pictures = re.findall(r"data:image/png;base64,([A-Za-z0-9+/=\s]+)", page)
+    assert "<caption>dartcast.Run</caption>" in page and len(pictures) == 2
+    assert all(base64.b64decode(picture).startswith(b"\x89PNG") for picture in pictures)
+    assert "500/500" in page and "contacts with" in page
+
+
+@pytest.mark.parametrize("name", ["sofa", "blender", "fenics"])
+def test_a_loop_with_a_solver_runs_with_its_stand_in(name: str, tmp_path: pathlib.Path) -> None:
+    file = ROOT / "examples" / "solvers" / f"{name}.py"
+    # A solver that is installed is not what the test is about.
+    program = f"import runpy, sys; sys.modules.update(Sofa=None, bpy=None, dolfinx=None); sys.path.insert(0, {str(file.parent)!r}); " \
+              f"runpy.run_path({str(file)!r})"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    count = int(re.search(r"(\d+) contacts", done.stdout)[1])
+    assert count > 0 and "0 particles in a wrong cell" in done.stdout or name == "blender", done.stdout
 
 
 def variables(name: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
