@@ -171,7 +171,7 @@ class Function:
 def functions(value: object) -> list[Function]:
     """The signatures of all overloads: lines of the docstring."""
     name = re.escape(value.__name__)
-    return [Function(line) for line in re.findall(rf"^{name}\(.*\) -> .*$", value.__doc__ or "", re.MULTILINE)]
+    return [Function(line) for line in re.findall(rf"^{name}\(.*\) -> .*$", inspect.cleandoc(value.__doc__ or ""), re.MULTILINE)]
 
 
 def choices(function: Function) -> list[Function]:

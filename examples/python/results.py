@@ -23,7 +23,7 @@ run = dc.read_run(folder)
 run  # a notebook shows a table and a picture
 
 print(f"{len(run)} frames, the last one: {run[-1]}")
-print(f"{len(run.contacts)} contacts with {run.contacts.dtype.names[:5]} ... for pandas.DataFrame(run.contacts)")
+print(f"{len(run.contacts)} contacts, for pandas.DataFrame(run.contacts); the first: {run.contacts[0]}")
 print({row["patch"]: int(row["deposited"]) for row in run.table("deposition") if row["deposited"]})
 
 figure, axes = plt.subplots(2, 3, figsize=(14, 7), layout="constrained")

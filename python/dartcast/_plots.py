@@ -48,7 +48,7 @@ def _draw_walls(axes: Any, mesh: MeshData) -> tuple[int, int]:
     """Draws the walls as shadows along the shortest side of the mesh. Returns the two other sides."""
     import matplotlib.collections
     extent = numpy.ptp(mesh.points, axis=0)
-    across, along = sorted(numpy.argsort(extent, kind="stable")[1:].tolist(), key=lambda k: extent[k])
+    across, along = sorted(numpy.argsort(extent, kind="stable")[1:].tolist(), key=lambda k: float(extent[k]))
     for walls in walls_of(mesh):
         shown = mesh.points[walls[::len(walls) // MAX_WALLS + 1]][:, :, [along, across]]
         axes.add_collection(matplotlib.collections.PolyCollection(

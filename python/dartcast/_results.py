@@ -46,9 +46,10 @@ def flat(records: Records) -> Records:
     for name in records.dtype.names or ():
         values = records[name]
         if values.dtype.names:
-            values = flat(values)
-            columns.update({f"{name}_{inner}": values[inner] for inner in values.dtype.names})
-        for index in numpy.ndindex(values.shape[1:]) if not values.dtype.names else ():
+            inner = flat(values)
+            columns.update({f"{name}_{part}": inner[part] for part in inner.dtype.names or ()})
+            continue
+        for index in numpy.ndindex(values.shape[1:]):
             parts = [*map(str, index[:-1]), "xyz"[index[-1]] if values.shape[-1] == 3 and values.dtype.kind == "f"
                      else str(index[-1])] if index else []
             columns["_".join([name, *parts])] = values[(slice(None), *index)]
@@ -104,7 +105,7 @@ def _read_vtp(path: pathlib.Path) -> dict[str, Arrays]:
     for section in root.iter():
         for array in section.findall("DataArray"):
             kind, bits = array.get("type", "").rstrip("0123456789"), int(array.get("type", "")[-2:].lstrip("nt"))
-            dtype = numpy.dtype(f"{order}{ {'Int': 'i', 'UInt': 'u', 'Float': 'f'}[kind]}{bits // 8}").newbyteorder(order)
+            dtype = numpy.dtype(f"{order}{ {'Int': 'i', 'UInt': 'u', 'Float': 'f'}[kind]}{bits // 8}")
             block = _block(data, first + int(array.get("offset", 0)), root.get("compressor", ""), order)
             values = numpy.frombuffer(block, dtype)
             components = int(array.get("NumberOfComponents", 1))

@@ -53,10 +53,10 @@ def test_a_notebook_shows_the_run_and_its_figures(tmp_path: pathlib.Path) -> Non
                            str(ROOT / "examples" / "python" / "results.py")], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     page = (tmp_path / "results.html").read_text(encoding="utf-8")
-    pictures = re.findall(r"data:image/png;base64,([A-Za-z0-9+/=\s]+)", page)
+    pictures = re.findall(r"data:image/png;base64,([A-Za-z0-9+/=\s]{5000,})", page)  # nbconvert has small ones of its own
     assert "<caption>dartcast.Run</caption>" in page and len(pictures) == 2
     assert all(base64.b64decode(picture).startswith(b"\x89PNG") for picture in pictures)
-    assert "500/500" in page and "contacts with" in page
+    assert "500/500" in page and "for pandas.DataFrame" in page
 
 
 @pytest.mark.parametrize("name", ["sofa", "blender", "fenics"])
