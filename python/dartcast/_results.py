@@ -44,7 +44,7 @@ def flat(records: Records) -> Records:
     """
     columns: dict[str, Any] = {}
     for name in records.dtype.names or ():
-        values = records[name]
+        values: Any = records[name]
         if values.dtype.names:
             inner = flat(values)
             columns.update({f"{name}_{part}": inner[part] for part in inner.dtype.names or ()})

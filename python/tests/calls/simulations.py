@@ -81,7 +81,7 @@ def of_adding() -> Calls:
         made.body_summaries()
 
     return {
-        "Simulation.__repr__": lambda: (repr(own), own._repr_html_()),
+        "Simulation.__repr__": lambda: repr(own),
         "Simulation.add": changed(lambda s: s.add(x, [1.0, 0.0, 0.0], 0.01)),
         "Simulation.add: arrays": changed(
             lambda s: s.add(x, np.ones((3, 3)), np.full(3, 0.01), [1.0]), user_data=["heat"]),
