@@ -44,6 +44,8 @@ struct ReadOptions {
   /// Called as a stage starts that may take long, with what is done, such as "tetgen fills the surface". Empty: none.
   /// The call comes in the thread of the caller.
   std::function<void(std::string_view stage)> on_stage = {};
+  /// Fields at the cells of an OpenFOAM time that become arrays at the points, too, by the rule of docs/scene.md.
+  std::vector<std::string> point_fields = {};
 };
 
 /// A mesh as read, and what was found in it.

@@ -32,7 +32,9 @@ class FieldFiles {
         files_(std::move(files)),
         points_(mesh.points.size()),
         count_(mesh.cell_count()),
-        cells_(cells) {}
+        cells_(cells) {
+    if (at_ != FieldPlace::cells) options_.point_fields = {array_};
+  }
 
   /// The place of the first file's array, from then on that of all.
   FieldPlace find_place() {
@@ -40,7 +42,7 @@ class FieldFiles {
     return *at_;
   }
 
-  [[nodiscard]] std::vector<Vec3> operator()(std::size_t k) const {
+  [[nodiscard]] std::vector<Vec3> operator()(std::size_t k) {
     return with_file_name(files_[k].string(), [&] {
       std::vector<Vec3> values = read_values(k);
       const auto bad = std::find_if_not(values.begin(), values.end(), is_finite);
@@ -67,10 +69,13 @@ class FieldFiles {
   }
 
  private:
-  [[nodiscard]] std::vector<Vec3> read_values(std::size_t k) const {
-    // A case has one mesh for all times: its values alone are enough.
-    if (at_ == FieldPlace::cells && cells_.are_all() && is_openfoam(files_[k]))
-      return openfoam_cell_vectors(files_[k], array_, count_, options_);
+  [[nodiscard]] std::vector<Vec3> read_values(std::size_t k) {
+    // A case has one mesh for all times: its values alone are enough, unless points have been dropped.
+    if (cells_.are_all() && is_openfoam(files_[k])) {
+      if (at_ == FieldPlace::cells) return openfoam_cell_vectors(files_[k], array_, count_, options_);
+      std::vector<Vec3> values = to_points_(files_[k], array_, options_);
+      if (values.size() == points_) return values;
+    }
     return field_values(read(k), array_, at_);
   }
 
@@ -81,6 +86,7 @@ class FieldFiles {
   std::size_t points_;
   std::size_t count_;  // of cells
   CellsOfScene cells_;
+  OpenFoamPointVectors to_points_;
 };
 
 // All times are arrays of one file, and are read at once.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,5 +50,20 @@ std::vector<Vec3> openfoam_points_at(const std::filesystem::path& path, const Re
 /// values.
 std::vector<Vec3> openfoam_cell_vectors(const std::filesystem::path& path, std::string_view field, std::size_t cells,
                                         const ReadOptions& options);
+
+/// Vector fields of a case at the points of its mesh, time by time.
+///
+/// Fields at cells are brought there with the points of their time (mesh/point_weights.hpp). At a point of faces to which
+/// the field's file gives values, these alone count: a mean by inverse distances, but 0 if one of them is 0, as at a wall
+/// without slip. Weights are kept as long as the points stay.
+class OpenFoamPointVectors {
+ public:
+  /// Of CASE/TIME, in the order of parse_openfoam()'s points. Throws likewise, and if there is no such field.
+  std::vector<Vec3> operator()(const std::filesystem::path& path, std::string_view field, const ReadOptions& options);
+
+ private:
+  struct AtTime;
+  std::shared_ptr<const AtTime> last_;
+};
 
 }  // namespace dartcast

@@ -50,6 +50,14 @@ std::string mesh_name(const MeshSource& mesh) {
                      box->jitter, surely_valid_jitter);
 }
 
+ReadOptions options_for_fields(const Scene& scene, ReadOptions options) {
+  for (const FieldScene* field : {&scene.motion.field, &scene.motion.force}) {
+    if (!field->array.empty() && field->files.empty() && field->at != FieldPlace::cells)
+      options.point_fields.push_back(field->array);
+  }
+  return options;
+}
+
 SceneMesh read_scene_mesh(const EnvironmentScene& scene, const ReadOptions& options, Threads threads) {
   ReadOptions read = options;
   read.linearise = scene.linearise;
@@ -124,7 +132,7 @@ std::vector<Finding> read_all_but_mesh(Scene& scene, const MeshData* mesh, const
 }
 
 LoadedScene load_scene_files(Scene scene, const ReadOptions& options, Threads threads) {
-  SceneMesh read = read_scene_mesh(scene.environment, options, threads);
+  SceneMesh read = read_scene_mesh(scene.environment, options_for_fields(scene, options), threads);
   for (Finding& warning : read_all_but_mesh(scene, &read.mesh, options)) read.warnings.push_back(std::move(warning));
   resolve_mesh(read, scene);
   scene.environment = EnvironmentScene{};

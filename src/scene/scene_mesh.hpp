@@ -31,7 +31,10 @@ auto with_mesh_name(const MeshSource& mesh, Make&& make) {
   return with_file_name(mesh_name(mesh), make);
 }
 
-/// Reads or makes the mesh. Only the options `max_memory` and `kept_mesh` have an effect. Throws InvalidMesh with the mesh
+/// The options, with the arrays that the scene's fields take from its mesh as `point_fields`.
+ReadOptions options_for_fields(const Scene& scene, ReadOptions options);
+
+/// Reads or makes the mesh. The options `patch_array` and `linearise` have no effect. Throws InvalidMesh with the mesh
 /// file's name if the mesh is refused.
 SceneMesh read_scene_mesh(const EnvironmentScene& scene, const ReadOptions& options = {}, Threads threads = {});
 

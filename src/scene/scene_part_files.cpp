@@ -88,7 +88,7 @@ void finish_piece(MeshData& mesh, const EnvironmentScene& scene, Ranks& ranks) {
 MeshPart sent_part(const Scene& scene, Ranks& ranks, const ReadOptions& options, Threads threads, LoadedScene& loaded) {
   std::vector<std::string> parts(ranks.size());
   if (ranks.rank() == 0) {
-    SceneMesh whole = read_scene_mesh(scene.environment, options, threads);
+    SceneMesh whole = read_scene_mesh(scene.environment, options_for_fields(scene, options), threads);
     resolve_mesh(whole, scene);
     loaded.skipped = std::move(whole.skipped);
     loaded.warnings = std::move(whole.warnings);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "dartcast/error.hpp"
+#include "mesh/point_weights.hpp"
 #include "simulation/series.hpp"
 
 namespace dartcast {
@@ -49,6 +50,38 @@ std::pair<const DataArray&, FieldPlace> array_of(const MeshData& mesh, const std
   throw_missing(mesh, name, at, components);
 }
 
+std::vector<Vec3> as_vectors(std::span<const double> values) {
+  std::vector<Vec3> result(values.size() / 3);
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+  return result;
+}
+
+// Arrays of vectors. Those at cells are brought to the points if they are wanted there; the weights are made once.
+class VectorArrays {
+ public:
+  VectorArrays(const MeshData& mesh, std::optional<FieldPlace> at) : mesh_(mesh), at_(at) {}
+
+  [[nodiscard]] FieldPlace place(const std::string& name) const {
+    return from_cells(name) != nullptr ? FieldPlace::points : array_of(mesh_, name, at_).second;
+  }
+  std::vector<Vec3> values(const std::string& name) {
+    const DataArray* const cells = from_cells(name);
+    if (cells == nullptr) return as_vectors(array_of(mesh_, name, at_).first.values);
+    if (!weights_) weights_ = weights_of_cells(mesh_);
+    return as_vectors(values_at_points(*weights_, cells->values, 3));
+  }
+
+ private:
+  [[nodiscard]] const DataArray* from_cells(const std::string& name) const {
+    const bool wanted = at_ == FieldPlace::points && find_array(mesh_.point_data, name, 3) == nullptr;
+    return wanted ? find_array(mesh_.cell_data, name, 3) : nullptr;
+  }
+
+  const MeshData& mesh_;
+  std::optional<FieldPlace> at_;
+  std::optional<PointWeights> weights_;
+};
+
 std::vector<std::string> names_of(const MeshData& mesh, const FieldScene& scene) {
   if (!is_pattern(scene.array)) return {scene.array};
   std::vector<std::string> all;
@@ -58,7 +91,7 @@ std::vector<std::string> names_of(const MeshData& mesh, const FieldScene& scene)
     }
   };
   if (scene.at != FieldPlace::cells) add(mesh.point_data);
-  if (scene.at != FieldPlace::points) add(mesh.cell_data);
+  add(mesh.cell_data);
   std::vector<std::string> names = numbered(scene.array, all);
   if (names.empty()) throw_missing(mesh, scene.array, scene.at, 3);
   return names;
@@ -71,21 +104,19 @@ const std::vector<double>& point_values(const MeshData& mesh, const std::string&
 }
 
 std::vector<Vec3> field_values(const MeshData& mesh, const std::string& array, std::optional<FieldPlace> at) {
-  const std::vector<double>& values = array_of(mesh, array, at).first.values;
-  std::vector<Vec3> result(values.size() / 3);
-  for (std::size_t i = 0; i < result.size(); ++i) result[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
-  return result;
+  return VectorArrays(mesh, at).values(array);
 }
 
 FieldPlace field_place(const MeshData& mesh, const std::string& array, std::optional<FieldPlace> at) {
-  return array_of(mesh, array, at).second;
+  return VectorArrays(mesh, at).place(array);
 }
 
 FieldSamples field_samples_of(const FieldScene& scene, const MeshData& mesh) {
   const std::vector<std::string> names = names_of(mesh, scene);
   const FieldPlace place = field_place(mesh, names.front(), scene.at);
+  VectorArrays arrays(mesh, place);
   std::vector<std::vector<Vec3>> values;
-  for (const std::string& name : names) values.push_back(field_values(mesh, name, place));
+  for (const std::string& name : names) values.push_back(arrays.values(name));
   std::vector<double> times =
       sample_times(fmt::format("the field '{}'", scene.array), scene.times, scene.spacing, names.size(), "arrays");
   FieldSamples samples = field_samples(std::move(times), std::move(values), place, scene.period);

@@ -15,7 +15,8 @@ namespace dartcast {
 /// The values of a point array of so many components. Throws InvalidMesh that names the arrays there are.
 const std::vector<double>& point_values(const MeshData& mesh, const std::string& array, std::size_t components);
 
-/// An array of three components as vectors. Throws as point_values().
+/// An array of three components as vectors. If they are wanted at the points, but are at the cells, these give each point
+/// theirs (mesh/point_weights.hpp). Throws as point_values().
 std::vector<Vec3> field_values(const MeshData& mesh, const std::string& array, std::optional<FieldPlace> at);
 
 /// The place of the values that field_values() takes.

@@ -15,6 +15,7 @@
 #include "dartcast/mesh_files.hpp"
 #include "dartcast/scene_file.hpp"
 #include "dartcast/simulation.hpp"
+#include "mesh/point_weights.hpp"
 #include "support/expectations.hpp"
 #include "support/foam_case.hpp"
 #include "support/shared_data.hpp"
@@ -101,7 +102,7 @@ TEST_F(OpenFoamScene, TimesAreFramesFromConstantOn) {
 TEST_F(OpenFoamScene, TheLastTimeOfASteadyCaseIsItsField) {
   write_case("case", {});
   const auto samples = [&](const std::string& keys) {
-    return load("[motion]\nfield = { array = 'U', files = ['case']" + keys + " }\n").motion.field.samples;
+    return load("[motion]\nfield = { array = 'U', files = ['case'], at = 'cells'" + keys + " }\n").motion.field.samples;
   };
   const auto write_schemes = [&](const std::string& text) {
     write_bytes(folder_ / "case/system/fvSchemes",
@@ -182,7 +183,7 @@ TEST_F(OpenFoamScene, FieldsAreSamplesAtTheirTimes) {
   for (const FoamStyle& style : test::foam_styles()) {
     fs::remove_all(folder_ / "case");
     write_case("case", style);
-    const Scene scene = load("[motion]\nfield = { array = 'U', files = 'case' }\n");
+    const Scene scene = load("[motion]\nfield = { array = 'U', files = 'case', at = 'cells' }\n");
     const FieldSamples& samples = scene.motion.field.samples;
     EXPECT_EQ(samples.times, (std::vector<double>{0.25, 1.0, 10.0, 20.0}));
     EXPECT_EQ(samples.place, FieldPlace::cells);
@@ -199,7 +200,8 @@ TEST_F(OpenFoamScene, UniformAndPointFields) {
   const auto samples = [&](const std::string& array) {
     return load(fmt::format("[motion]\nfield = {{ array = '{}', files = ['case'] }}\n", array)).motion.field.samples;
   };
-  EXPECT_EQ(samples("V").read(0), std::vector<Vec3>(box().cell_count(), Vec3{1, 2, 3}));
+  EXPECT_EQ(samples("V").place, FieldPlace::points);
+  EXPECT_EQ(samples("V").read(0), std::vector<Vec3>(box().points.size(), Vec3{1, 2, 3}));
   EXPECT_EQ(samples("W").place, FieldPlace::points);
   EXPECT_EQ(samples("W").read(0), swayed(box().points, 2.0));
 }
@@ -263,15 +265,153 @@ TEST_F(OpenFoamScene, PartsOfSeveralProcessors) {
       FoamWriter(processor, style).field(time, "U", values);
     }
   }
-  const Scene scene = load("[motion]\nfield = { array = 'U', files = 'case' }\n");
+  const Scene scene = load("[motion]\nfield = { array = 'U', files = 'case', at = 'cells' }\n");
   const FieldSamples& samples = scene.motion.field.samples;
   ASSERT_EQ(samples.times.size(), times.size());
   for (std::size_t k = 0; k < samples.times.size(); ++k)
     EXPECT_EQ(samples.read(k), velocities(mesh.cell_count(), samples.times[k])) << k;
   // With a mesh of the whole the parts still have the fields.
   FoamWriter(folder_ / "case", {}).write(test::foam_mesh(mesh));
-  EXPECT_EQ(load("[motion]\nfield = { array = 'U', files = 'case' }\n").motion.field.samples.read(1),
+  EXPECT_EQ(load("[motion]\nfield = { array = 'U', files = 'case', at = 'cells' }\n").motion.field.samples.read(1),
             velocities(mesh.cell_count(), samples.times[1]));
+}
+
+// Fields at cells, brought to points.
+
+std::string vector_list(const std::vector<Vec3>& values) {
+  std::string text = fmt::format("nonuniform List<vector> {} (", values.size());
+  for (const Vec3& v : values) text += fmt::format("({} {} {})", v.x, v.y, v.z);
+  return text + ")";
+}
+
+Vec3 shear(const Vec3& x, double t) { return {1.0 + x.y + t, 0.5 * x.z, 0.25 * x.x}; }
+
+// The middles of the faces of a patch, as the case lists them.
+std::vector<Vec3> middles_of_patch(const test::FoamMesh& mesh, const std::string& name) {
+  std::vector<Vec3> middles;
+  std::size_t first = mesh.neighbour.size();
+  for (const auto& patch : mesh.patches) {
+    for (std::size_t f = first; f < first + patch.size && patch.name == name; ++f) {
+      Vec3 sum;
+      for (const std::int64_t p : mesh.faces[f]) sum += mesh.points[static_cast<std::size_t>(p)];
+      middles.push_back(sum * (1.0 / static_cast<double>(mesh.faces[f].size())));
+    }
+    first += patch.size;
+  }
+  return middles;
+}
+
+// The inlet has values of its own, the walls are without slip, and the outlet takes the cells' values.
+std::string shear_file(const MeshData& mesh, double t) {
+  std::vector<Vec3> cells;
+  for (const Vec3& x : cell_centres(mesh)) cells.push_back(shear(x, t));
+  std::vector<Vec3> inlet;
+  for (const Vec3& x : middles_of_patch(test::foam_mesh(mesh), "xmin")) inlet.push_back(shear(x, t));
+  return "internalField " + vector_list(cells) + ";\nboundaryField\n{\n  xmin { type fixedValue; value " +
+         vector_list(inlet) +
+         "; }\n  \"y.*\" { type noSlip; }\n  zmin { type slip; $default; }\n  zmax { type symmetry; }\n" +
+         "  xmax { type zeroGradient; value uniform (7 7 7); }\n}\n";
+}
+
+TEST_F(OpenFoamScene, PointsTakeTheValuesOfPatches) {
+  const MeshData mesh = box();
+  const FoamWriter writer(folder_ / "case", {});
+  writer.write(test::foam_mesh(mesh));
+  writer.file("1/U", "volVectorField", shear_file(mesh, 0.0));
+  const Scene scene = load("[motion]\nfield = { array = 'U', files = 'case' }\n");
+  const FieldSamples& samples = scene.motion.field.samples;
+  EXPECT_EQ(samples.place, FieldPlace::points);
+  const std::vector<Vec3> values = samples.read(0);
+  ASSERT_EQ(values.size(), mesh.points.size());
+  std::size_t walls = 0;
+  std::size_t exact = 0;
+  for (std::size_t p = 0; p < values.size(); ++p) {
+    const Vec3& x = mesh.points[p];
+    if (x.y == 0.0 || x.y == 1.0) {
+      EXPECT_EQ(values[p], Vec3());
+      ++walls;
+    } else if (x.z > 0.0 && x.z < 1.0 && x.x < 1.0) {  // inside, and inside the inlet
+      test::expect_near(values[p], shear(x, 0.0), 1e-14);
+      ++exact;
+    } else if (x.x == 1.0 && x.z > 0.0 && x.z < 1.0) {  // in the outlet: of the last cells, half a cell upstream
+      test::expect_near(values[p], shear({1.0 - 0.125, x.y, x.z}, 0.0), 1e-14);
+    }
+  }
+  EXPECT_EQ(walls, 2U * 5U * 4U);
+  EXPECT_EQ(exact, 4U * 2U * 2U);
+  // The same arrays of the scene's mesh, and at the cells if they are wanted there.
+  const auto in_mesh = [&](const std::string& keys) {
+    const std::string text = "[environment]\nmesh = 'case/1'\n[motion]\nfield = { array = 'U'" + keys + " }\n";
+    const Scene loaded = load_scene_files(parse_scene(text, folder_ / "scene.toml")).scene;
+    const MeshData& read = std::get<MeshData>(loaded.environment.mesh);
+    return std::pair{read.point_data, read.cell_data.front().values.size()};
+  };
+  const auto [point_data, size] = in_mesh("");
+  ASSERT_EQ(point_data.size(), 1U);
+  for (std::size_t p = 0; p < values.size(); ++p)
+    EXPECT_EQ((Vec3{point_data[0].values[3 * p], point_data[0].values[3 * p + 1], point_data[0].values[3 * p + 2]}),
+              values[p]);
+  EXPECT_EQ(size, 3 * mesh.cell_count());
+  EXPECT_TRUE(in_mesh(", at = 'cells'").first.empty());
+}
+
+// At each time by the points of that time; in parts, and with a mesh in binary, to the same bits.
+TEST_F(OpenFoamScene, PointsOfMovingCasesAndOfParts) {
+  const MeshData rest = box();
+  std::vector<std::size_t> part;
+  for (std::size_t c = 0; c < rest.cell_count(); ++c) part.push_back(c % 2);
+  const FoamWriter writer(folder_ / "case", {});
+  writer.write(test::foam_mesh(rest));
+  MeshData moved = rest;
+  for (const auto& [time, t] : times) {
+    if (t != 10.0) moved.points = swayed(rest.points, t);  // at 10 it stands where it stood at 1
+    if (t != 10.0) writer.points(time, moved.points);
+    if (t == 10.0) moved.points = swayed(rest.points, 1.0);
+    writer.file(time + "/U", "volVectorField", shear_file(moved, t));
+  }
+  const Scene scene = load("[motion]\nfield = { array = 'U', files = 'case' }\n");
+  const FieldSamples samples = scene.motion.field.samples;
+  for (const std::size_t k : {2U, 0U, 1U, 3U}) {
+    const double t = samples.times[k];
+    const std::vector<Vec3> values = samples.read(k);
+    for (std::size_t p = 0; p < values.size(); ++p) {
+      const Vec3& x = rest.points[p];
+      if (x.x > 0.0 && x.x < 1.0 && x.y > 0.0 && x.y < 1.0 && x.z > 0.0 && x.z < 1.0)
+        test::expect_near(values[p], shear(swayed({x}, t == 10.0 ? 1.0 : t).front(), t), 1e-13);
+    }
+  }
+}
+
+TEST_F(OpenFoamScene, PatchValuesOfProcessors) {
+  const MeshData mesh = box();
+  const test::FoamMesh whole = test::foam_mesh(mesh);
+  FoamWriter(folder_ / "case", {}).write(whole);
+  FoamWriter(folder_ / "case", {}).file("1/U", "volVectorField", shear_file(mesh, 0.0));
+  const std::string text = "[motion]\nfield = { array = 'U', files = 'case' }\n";
+  const std::vector<Vec3> expected = load(text).motion.field.samples.read(0);
+  fs::remove_all(folder_ / "case");
+  std::vector<std::size_t> part;
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c) part.push_back(c % 2);
+  test::write_foam_parts(folder_ / "case", {}, whole, part);
+  const std::vector<Vec3> centres = cell_centres(mesh);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const fs::path processor = folder_ / fmt::format("case/processor{}", k);
+    std::vector<Vec3> cells;
+    for (std::size_t c = 0; c < centres.size(); ++c) {
+      if (part[c] == k) cells.push_back(shear(centres[c], 0.0));
+    }
+    std::string inlet = "fixedValue; value nonuniform List<vector> 0()";
+    const std::vector<Vec3> middles = middles_of_patch(test::FoamPart(whole, part, k).mesh(), "xmin");
+    std::vector<Vec3> values;
+    for (const Vec3& x : middles) values.push_back(shear(x, 0.0));
+    if (!values.empty()) inlet = "fixedValue; value " + vector_list(values);
+    FoamWriter(processor, {})
+        .file("1/U", "volVectorField",
+              "internalField " + vector_list(cells) + ";\nboundaryField { xmin { type " + inlet +
+                  "; } \".*\" { type zeroGradient; } \"y.*\" { type noSlip; } "
+                  "\"proc.*\" { type processor; value uniform (5 5 5); } }\n");
+  }
+  EXPECT_EQ(load(text).motion.field.samples.read(0), expected);
 }
 
 TEST_F(OpenFoamScene, PointsOfPartsAtATime) {

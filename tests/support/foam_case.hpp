@@ -262,6 +262,8 @@ class FoamPart {
     mesh_.face_zones = own_zones(whole.face_zones, face_number_);
   }
 
+  [[nodiscard]] const FoamMesh& mesh() const { return mesh_; }
+
   void write(const FoamWriter& writer) const {
     writer.write(mesh_);
     writer.labels_file("pointProcAddressing", points_);

@@ -8,6 +8,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <set>
 #include <utility>
 
@@ -208,58 +209,41 @@ constexpr std::array<FieldClass, 8> field_classes = {{{"volScalarField", true, 1
                                                       {"pointSymmTensorField", false, 6},
                                                       {"pointTensorField", false, 9}}};
 
-/// Moves to the value of internalField; false if there is none. Collects the values that stand before it, also in
-/// files that this one includes. Other directives are passed over: their values are missed if they are needed.
-bool find_internal_field(FoamFile& file, const fs::path& folder, std::uint64_t max_memory, FoamMacros& values,
-                         unsigned depth = 0) {
-  constexpr unsigned deepest = 10;
-  while (file.next() != '\0') {
-    if (file.next() == '#') {
-      const std::string name = file.directive();
-      if (name.empty() || depth == deepest || !has_foam_file(folder, name)) continue;
-      FoamFile included(folder, name, max_memory, true);
-      find_internal_field(included, (folder / name).parent_path(), max_memory, values, depth + 1);
-    } else if (file.next() == '$') {
-      file.skip_entry();
-    } else {
-      const std::string key(file.word("a key"));
-      if (key == "internalField" && depth == 0) return true;
-      values[key] = file.entry();
-    }
+std::vector<PolyPatchRange> patches_with_faces(const fs::path& mesh, std::size_t faces, std::uint64_t max_memory) {
+  std::vector<PolyPatchRange> patches = read_poly_patches(mesh, max_memory);
+  for (const PolyPatchRange& p : patches) {
+    if (p.first > faces || p.size > faces - p.first)
+      throw InvalidMesh(fmt::format("{}: the patch {} has faces beyond {}", mesh.string(), p.patch.name, faces));
   }
-  return false;
+  return patches;
 }
 
-std::vector<double> internal_field(const fs::path& folder, std::string_view name, std::size_t components,
-                                   std::size_t items, std::uint64_t max_memory) {
-  FoamFile file(folder, name, max_memory);
-  FoamMacros macros;
-  if (!find_internal_field(file, folder, max_memory, macros)) file.fail("there is no internalField");
-  file.expand(macros);
-  const std::string kind(file.word("'uniform' or 'nonuniform'"));
-  if (kind == "nonuniform") {
-    std::vector<double> values = file.numbers("values", components);
-    if (values.size() != components * items)
-      file.fail(fmt::format("{} values for {} cells or points", values.size() / components, items));
-    return values;
+struct FoamPart {
+  std::vector<std::uint32_t> labels;  // in the whole
+  FoamFieldValues field;
+};
+
+// Values of the faces that it shares with the whole's boundary, by the whole's labels.
+FoamPart read_foam_part(const fs::path& processor, const std::string& time, std::string_view name, bool at_cells,
+                        std::size_t components, bool with_faces, std::uint64_t max_memory) {
+  const fs::path mesh = processor / "constant" / "polyMesh";
+  FoamPart part{part_labels(mesh, at_cells ? "cellProcAddressing" : "pointProcAddressing", max_memory), {}};
+  std::vector<std::int64_t> faces;
+  std::vector<PolyPatchRange> patches;
+  if (with_faces) {
+    faces = FoamFile(mesh, "faceProcAddressing", max_memory).signed_labels("face labels", no_label_limit);
+    patches = patches_with_faces(mesh, faces.size(), max_memory);
   }
-  if (kind != "uniform") file.fail(fmt::format("internalField {}: it must be uniform or nonuniform", kind));
-  std::vector<double> one;
-  file.expand(macros);
-  if (components > 1) file.expect('(', "before the value of all");
-  for (std::size_t k = 0; k < components; ++k) {
-    file.expand(macros);
-    one.push_back(file.number("a number"));
-  }
-  std::vector<double> values;
-  for (std::size_t i = 0; i < items; ++i) values.insert(values.end(), one.begin(), one.end());
-  return values;
+  part.field = read_foam_field(processor / time, name, components, part.labels.size(), patches, max_memory);
+  // They count from 1; a minus says that the face is turned.
+  for (std::uint32_t& f : part.field.faces.faces) f = static_cast<std::uint32_t>(std::abs(faces[f]) - 1);
+  return part;
 }
 
 }  // namespace
 
 std::optional<FoamCase::Field> FoamCase::field(std::string_view name, std::size_t cells, std::size_t points,
-                                               std::uint64_t max_memory) const {
+                                               std::uint64_t max_memory, bool with_faces) const {
   const fs::path whole = folder_of(time_);
   const bool divided = !has_foam_file(whole, name);
   if (divided && processors_.empty()) return std::nullopt;
@@ -268,23 +252,28 @@ std::optional<FoamCase::Field> FoamCase::field(std::string_view name, std::size_
       std::find_if(field_classes.begin(), field_classes.end(), [&](const FieldClass& c) { return c.name == type; });
   if (known == field_classes.end()) return std::nullopt;
   const std::size_t items = known->at_cells ? cells : points;
-  Field field{std::string(name), known->at_cells, known->components, {}};
+  Field field{std::string(name), known->at_cells, known->components, {}, {}};
   if (!divided) {
-    field.values = internal_field(whole, name, field.components, items, max_memory);
+    std::vector<PolyPatchRange> patches;
+    if (with_faces && parts_.empty()) patches = patches_with_faces(mesh_, no_label_limit, max_memory);
+    FoamFieldValues read = read_foam_field(whole, name, field.components, items, patches, max_memory);
+    field.values = std::move(read.inside);
+    field.faces = std::move(read.faces);
     return field;
   }
   field.values.resize(items * field.components);
   for (const fs::path& processor : processors_) {
-    const auto labels = part_labels(processor / "constant" / "polyMesh",
-                                    known->at_cells ? "cellProcAddressing" : "pointProcAddressing", max_memory);
-    const auto values = internal_field(processor / time_, name, field.components, labels.size(), max_memory);
+    const auto [labels, read] =
+        read_foam_part(processor, time_, name, known->at_cells, field.components, with_faces, max_memory);
     for (std::size_t i = 0; i < labels.size(); ++i) {
       if (labels[i] >= items)
         throw InvalidMesh(fmt::format("{}/{}/{}: its item {} has the label {}; the whole has {}",
                                       processor.filename().string(), time_, name, i, labels[i], items));
-      std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(i * field.components), field.components,
+      std::copy_n(read.inside.begin() + static_cast<std::ptrdiff_t>(i * field.components), field.components,
                   field.values.begin() + static_cast<std::ptrdiff_t>(labels[i] * field.components));
     }
+    field.faces.faces.insert(field.faces.faces.end(), read.faces.faces.begin(), read.faces.faces.end());
+    field.faces.values.insert(field.faces.values.end(), read.faces.values.begin(), read.faces.values.end());
   }
   return field;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dartcast/vec3.hpp"
+#include "formats/openfoam/foam_field.hpp"
 #include "formats/openfoam/poly_mesh.hpp"
 
 namespace dartcast {
@@ -44,6 +45,8 @@ class FoamCase {
   [[nodiscard]] PolyMesh read(std::uint64_t max_memory) const;
   /// The points at the path's time: of its folder, else of the last one before that has points.
   [[nodiscard]] std::vector<Vec3> points(std::uint64_t max_memory) const;
+  /// That time: "constant", or the name of its folder.
+  [[nodiscard]] std::string time_of_points() const;
 
   /// A field's values in the order of cells or points, `components` each.
   struct Field {
@@ -51,18 +54,18 @@ class FoamCase {
     bool at_cells = true;
     std::size_t components = 1;
     std::vector<double> values;
+    FoamFaceValues faces;  ///< in no order; only if they are wanted
   };
   /// The field at the path's time, of a mesh of so many cells and points. None if there is no such file, or its class
   /// is not one of fields at cells or points.
   [[nodiscard]] std::optional<Field> field(std::string_view name, std::size_t cells, std::size_t points,
-                                           std::uint64_t max_memory) const;
+                                           std::uint64_t max_memory, bool with_faces = false) const;
   /// The names of all files in the path's time.
   [[nodiscard]] std::vector<std::string> files() const;
 
  private:
   [[nodiscard]] std::filesystem::path folder_of(std::string_view time) const { return root_ / time; }
   [[nodiscard]] std::vector<std::filesystem::path> mesh_folders() const;
-  [[nodiscard]] std::string time_of_points() const;
 
   std::filesystem::path root_;
   std::filesystem::path mesh_;     // the polyMesh folder; of the processors' folders if these are the case

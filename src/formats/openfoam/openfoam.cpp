@@ -3,13 +3,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <functional>
+#include <memory>
 #include <optional>
+#include <span>
+#include <unordered_map>
 #include <utility>
 
 #include "dartcast/error.hpp"
 #include "formats/openfoam/foam_case.hpp"
 #include "formats/openfoam/foam_file.hpp"
 #include "formats/openfoam/poly_cells.hpp"
+#include "mesh/point_weights.hpp"
 
 namespace dartcast {
 namespace {
@@ -39,17 +45,76 @@ std::vector<double> selected(std::vector<double> values, std::size_t components,
   return out;
 }
 
-void add_fields(const FoamCase& from, std::size_t cells, std::size_t points, std::uint64_t max_memory,
+/// Brings fields at the cells of a mesh, as parsed, to its points. Those on faces of patches that have values take these
+/// alone.
+class CellsToPoints {
+ public:
+  explicit CellsToPoints(const MeshData& mesh)
+      : of_cells_(weights_of_cells(mesh)), of_faces_(weights_of_patch_faces(mesh)), labels_(mesh.patch_source) {}
+
+  [[nodiscard]] std::vector<double> operator()(const FoamCase::Field& field) const {
+    std::vector<double> values = values_at_points(of_cells_, field.values, field.components);
+    const std::vector<const double*> faces = values_of_faces(field);
+    std::vector<double> sum(field.components);
+    for (std::size_t p = 0; p < of_faces_.points(); ++p) {
+      if (is_known(faces, field.components, p, sum))
+        std::copy(sum.begin(), sum.end(), values.begin() + static_cast<std::ptrdiff_t>(p * field.components));
+    }
+    return values;
+  }
+
+ private:
+  // Of each patch face; null: it has none.
+  [[nodiscard]] std::vector<const double*> values_of_faces(const FoamCase::Field& field) const {
+    std::unordered_map<std::uint32_t, const double*> known;
+    for (std::size_t i = 0; i < field.faces.faces.size(); ++i)
+      known.emplace(field.faces.faces[i], &field.faces.values[i * field.components]);
+    std::vector<const double*> values(labels_.size(), nullptr);
+    for (std::size_t f = 0; f < labels_.size() && !known.empty(); ++f) {
+      if (const auto found = known.find(labels_[f]); found != known.end()) values[f] = found->second;
+    }
+    return values;
+  }
+
+  // Whether faces at the point have values. A vector is 0 if it is 0 on one of them: a wall without slip.
+  [[nodiscard]] bool is_known(const std::vector<const double*>& faces, std::size_t components, std::size_t p,
+                              std::vector<double>& sum) const {
+    double total = 0.0;
+    bool still = false;
+    std::fill(sum.begin(), sum.end(), 0.0);
+    for (std::size_t k = of_faces_.offsets[p]; k < of_faces_.offsets[p + 1]; ++k) {
+      const double* const value = faces[of_faces_.items[k]];
+      if (value == nullptr) continue;
+      total += of_faces_.weights[k];
+      for (std::size_t j = 0; j < components; ++j) sum[j] += value[j] * of_faces_.weights[k];
+      still = still || (components == 3 && std::all_of(value, value + 3, [](double x) { return x == 0.0; }));
+    }
+    for (double& x : sum) x = still ? 0.0 : x / total;
+    return total > 0.0;
+  }
+
+  PointWeights of_cells_;
+  PointWeights of_faces_;
+  std::vector<std::uint32_t> labels_;  // of the patch faces
+};
+
+void add_fields(const FoamCase& from, std::size_t cells, std::size_t points, const ReadOptions& options,
                 const std::vector<std::uint32_t>& kept_points, ParsedMesh& parsed) {
   MeshData& mesh = parsed.mesh;
+  std::optional<CellsToPoints> to_points;
   for (const std::string& name : from.files()) {
+    const bool at_points = std::count(options.point_fields.begin(), options.point_fields.end(), name) != 0;
     std::optional<FoamCase::Field> field;
     try {
-      field = from.field(name, cells, points, max_memory);
+      field = from.field(name, cells, points, options.max_memory, at_points);
     } catch (const InvalidMesh& e) {
       parsed.warnings.push_back({unread_field + name, 1, {}, fmt::format("it is left out: {}", e.what())});
     }
     if (!field) continue;
+    if (at_points && field->at_cells) {
+      if (!to_points) to_points.emplace(mesh);
+      mesh.point_data.push_back({name, field->components, (*to_points)(*field)});
+    }
     DataArray array{name, field->components, {}};
     array.values =
         field->at_cells ? std::move(field->values) : selected(std::move(field->values), field->components, kept_points);
@@ -70,6 +135,11 @@ FieldSeries times_with(const FoamCase& from, std::string_view file) {
   return series;
 }
 
+/// `kept`: the labels of its points; empty: all.
+ParsedMesh parsed_mesh(PolyMesh mesh, std::vector<std::uint32_t>& kept) {
+  return has_empty_faces(mesh) ? mesh_in_plane(mesh, kept) : mesh_in_space(std::move(mesh));
+}
+
 }  // namespace
 
 bool is_openfoam(const fs::path& path) { return FoamCase::find(path).has_value(); }
@@ -86,8 +156,8 @@ ParsedMesh parse_openfoam(const fs::path& path, const ReadOptions& options) {
   const std::size_t cells = mesh.cells;
   const std::size_t points = mesh.points.size();
   std::vector<std::uint32_t> kept;
-  ParsedMesh parsed = has_empty_faces(mesh) ? mesh_in_plane(mesh, kept) : mesh_in_space(std::move(mesh));
-  if (from.names_time()) add_fields(from, cells, points, options.max_memory, kept, parsed);
+  ParsedMesh parsed = parsed_mesh(std::move(mesh), kept);
+  if (from.names_time()) add_fields(from, cells, points, options, kept, parsed);
   parsed.format = from.parts().empty() ? "OpenFOAM polyMesh"
                                        : fmt::format("OpenFOAM polyMesh, of {} processors", from.parts().size());
   finish(parsed);
@@ -151,17 +221,55 @@ std::vector<Vec3> openfoam_points_at(const fs::path& path, const ReadOptions& op
   return case_of(path).points(options.max_memory);
 }
 
+namespace {
+
+FoamCase::Field vectors_of(const FoamCase& from, const fs::path& path, std::string_view field, std::size_t cells,
+                           std::size_t points, std::uint64_t max_memory, bool with_faces) {
+  auto found = from.field(field, cells, points, max_memory, with_faces);
+  if (!found || found->components != 3)
+    throw InvalidMesh(fmt::format("{}: there is no field {} of vectors at cells", path.string(), field));
+  return std::move(*found);
+}
+
+std::vector<Vec3> as_vec3(std::span<const double> values) {
+  std::vector<Vec3> vectors;
+  vectors.reserve(values.size() / 3);
+  for (std::size_t i = 0; i + 2 < values.size(); i += 3) vectors.push_back({values[i], values[i + 1], values[i + 2]});
+  return vectors;
+}
+
+}  // namespace
+
 std::vector<Vec3> openfoam_cell_vectors(const fs::path& path, std::string_view field, std::size_t cells,
                                         const ReadOptions& options) {
-  const FoamCase from = case_of(path);
-  const auto found = from.field(field, cells, 0, options.max_memory);
-  if (!found || !found->at_cells || found->components != 3)
+  const FoamCase::Field found = vectors_of(case_of(path), path, field, cells, 0, options.max_memory, false);
+  if (!found.at_cells)
     throw InvalidMesh(fmt::format("{}: there is no field {} of vectors at cells", path.string(), field));
-  std::vector<Vec3> vectors;
-  vectors.reserve(cells);
-  for (std::size_t c = 0; c < cells; ++c)
-    vectors.push_back({found->values[3 * c], found->values[3 * c + 1], found->values[3 * c + 2]});
-  return vectors;
+  return as_vec3(found.values);
+}
+
+struct OpenFoamPointVectors::AtTime {
+  std::string time;  // of the points
+  std::size_t cells;
+  std::size_t points;
+  std::vector<std::uint32_t> kept;
+  std::function<std::vector<double>(const FoamCase::Field&)> to_points;
+};
+
+std::vector<Vec3> OpenFoamPointVectors::operator()(const fs::path& path, std::string_view field,
+                                                   const ReadOptions& options) {
+  const FoamCase from = case_of(path);
+  const std::string time = from.time_of_points();
+  if (!last_ || last_->time != time) {
+    PolyMesh mesh = from.read(options.max_memory);
+    const std::size_t cells = mesh.cells;
+    const std::size_t points = mesh.points.size();
+    std::vector<std::uint32_t> kept;
+    const ParsedMesh parsed = parsed_mesh(std::move(mesh), kept);
+    last_ = std::make_shared<const AtTime>(AtTime{time, cells, points, std::move(kept), CellsToPoints(parsed.mesh)});
+  }
+  FoamCase::Field found = vectors_of(from, path, field, last_->cells, last_->points, options.max_memory, true);
+  return as_vec3(found.at_cells ? last_->to_points(found) : selected(std::move(found.values), 3, last_->kept));
 }
 
 }  // namespace dartcast

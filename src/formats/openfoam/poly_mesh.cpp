@@ -34,27 +34,31 @@ void read_owners(const fs::path& folder, std::uint64_t max_memory, PolyMesh& mes
   }
 }
 
-struct PatchEntry {
-  PolyPatch patch;
+PolyPatchRange read_patch(FoamFile& file) {
+  PolyPatchRange range;
   std::int64_t size = -1;
-  std::int64_t start = -1;
-};
-
-PatchEntry read_patch(FoamFile& file) {
-  PatchEntry entry;
-  entry.patch.name = file.word("the name of a patch");
-  file.expect('{', fmt::format("behind the name {}", entry.patch.name));
+  std::int64_t first = -1;
+  range.patch.name = file.word("the name of a patch");
+  file.expect('{', fmt::format("behind the name {}", range.patch.name));
   while (!file.take('}')) {
     const std::string key(file.word("a key of a patch"));
-    if (key == "type") entry.patch.type = file.word("the type of a patch");
-    if (key == "referPatch") entry.patch.refers = file.word("the name of a patch");
-    if (key == "nFaces") entry.size = file.integer("the number of faces", 0, no_label_limit);
-    if (key == "startFace") entry.start = file.integer("the first face", 0, no_label_limit);
+    if (key == "type") range.patch.type = file.word("the type of a patch");
+    if (key == "referPatch") range.patch.refers = file.word("the name of a patch");
+    if (key == "nFaces") size = file.integer("the number of faces", 0, no_label_limit);
+    if (key == "startFace") first = file.integer("the first face", 0, no_label_limit);
     file.skip_entry();
   }
-  if (entry.size < 0 || entry.start < 0)
-    file.fail(fmt::format("the patch {} has no nFaces or no startFace", entry.patch.name));
-  return entry;
+  if (size < 0 || first < 0) file.fail(fmt::format("the patch {} has no nFaces or no startFace", range.patch.name));
+  range.first = static_cast<std::size_t>(first);
+  range.size = static_cast<std::size_t>(size);
+  return range;
+}
+
+template <class Take>
+void for_each_patch(FoamFile& file, Take&& take) {
+  if (file.next() != '(') file.integer("the number of patches", 0, no_label_limit);
+  file.expect('(', "before the patches");
+  while (!file.take(')')) take(read_patch(file));
 }
 
 // Faces behind those inside are in one patch each.
@@ -64,23 +68,19 @@ void read_boundary(const fs::path& folder, std::uint64_t max_memory, PolyMesh& m
   mesh.patch.assign(n, none);
   mesh.neighbour.resize(n, none);
   FoamFile file(folder, "boundary", max_memory);
-  if (file.next() != '(') file.integer("the number of patches", 0, no_label_limit);
-  file.expect('(', "before the patches");
-  while (!file.take(')')) {
-    PatchEntry entry = read_patch(file);
-    const auto first = static_cast<std::size_t>(entry.start);
-    const auto size = static_cast<std::size_t>(entry.size);
+  for_each_patch(file, [&](PolyPatchRange range) {
+    const auto [first, size] = std::pair{range.first, range.size};
     if (size > 0 && (first < inside || first > n || size > n - first))
-      file.fail(fmt::format("the patch {} has the faces {} to {}; those of the boundary are {} to {}", entry.patch.name,
+      file.fail(fmt::format("the patch {} has the faces {} to {}; those of the boundary are {} to {}", range.patch.name,
                             first, first + size - 1, inside, n - 1));
     for (std::size_t f = first; f < first + size; ++f) {
       if (mesh.patch[f] != none)
         file.fail(
-            fmt::format("face {} is in the patches {} and {}", f, mesh.patches[mesh.patch[f]].name, entry.patch.name));
+            fmt::format("face {} is in the patches {} and {}", f, mesh.patches[mesh.patch[f]].name, range.patch.name));
       mesh.patch[f] = static_cast<std::uint32_t>(mesh.patches.size());
     }
-    mesh.patches.push_back(std::move(entry.patch));
-  }
+    mesh.patches.push_back(std::move(range.patch));
+  });
   const auto without = std::find(mesh.patch.begin() + static_cast<std::ptrdiff_t>(inside), mesh.patch.end(), none);
   if (without != mesh.patch.end())
     file.fail(fmt::format("face {} is on the boundary, but in no patch", without - mesh.patch.begin()));
@@ -118,6 +118,13 @@ std::vector<PolyZone> read_zones(const fs::path& folder, std::uint64_t max_memor
 }
 
 }  // namespace
+
+std::vector<PolyPatchRange> read_poly_patches(const fs::path& folder, std::uint64_t max_memory) {
+  FoamFile file(folder, "boundary", max_memory);
+  std::vector<PolyPatchRange> patches;
+  for_each_patch(file, [&](PolyPatchRange range) { patches.push_back(std::move(range)); });
+  return patches;
+}
 
 std::vector<Vec3> read_poly_points(const fs::path& folder, std::uint64_t max_memory) {
   FoamFile file(folder, "points", max_memory);

@@ -21,6 +21,13 @@ struct PolyPatch {
   std::string refers{};  ///< processorCyclic: the patch of the whole that its faces are of
 };
 
+/// A patch, and its faces, which are consecutive.
+struct PolyPatchRange {
+  PolyPatch patch;
+  std::size_t first = 0;
+  std::size_t size = 0;
+};
+
 struct PolyZone {
   std::string name;
   std::vector<std::uint32_t> labels;
@@ -42,6 +49,9 @@ struct PolyMesh {
 /// Reads points, faces, owner, neighbour, boundary and the zones of a folder. Labels are in range, and each face has at
 /// least three corners. Throws InvalidMesh with file and line, or byte.
 PolyMesh read_poly_mesh(const std::filesystem::path& folder, std::uint64_t max_memory);
+
+/// The patches of a folder alone. Throws likewise.
+std::vector<PolyPatchRange> read_poly_patches(const std::filesystem::path& folder, std::uint64_t max_memory);
 
 /// The points of a folder alone.
 std::vector<Vec3> read_poly_points(const std::filesystem::path& folder, std::uint64_t max_memory);
