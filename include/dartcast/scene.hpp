@@ -124,10 +124,40 @@ struct ParticleSeeds {
 struct PlacedParticles {
   std::variant<std::filesystem::path, ParticleSeeds> positions;  ///< the file: .vtp or .csv
 };
-/// Particles that enter through a patch, at a rate.
+/// Factors of a rate at times, linear between them. Before the first time it is as at the first, after the last as at the
+/// last.
+struct Waveform {
+  std::vector<double> times;    ///< s, increasing; empty: the factor is 1
+  std::vector<double> factors;  ///< one for each time, not negative
+  double period = 0.0;          ///< above 0, s: it repeats, as FieldSamples::period
+};
+
+/// Where particles enter at a patch.
+enum class InletProfile : std::uint8_t {
+  uniform,  ///< evenly by area
+  /// By the volume of fluid that the field brings in through each place, with the field's velocity there. None enter
+  /// where it flows out, nor in a step in which it brings in nothing.
+  flux
+};
+
+/// A point that sends particles out between two cones, evenly by solid angle; in the plane by angle.
+struct InletCone {
+  Vec3 at;                      ///< in a free cell; while it is in none, no particle enters
+  Vec3 axis = {0.0, 0.0, 1.0};  ///< of any length but 0
+  double inner = 0.0;           ///< degrees between the axis and the inner cone
+  double outer = 0.0;           ///< and the outer one: not less than `inner`, at most 180
+  double speed = 0.0;           ///< m / s
+};
+
+/// Particles that enter through a patch or from a point: at a rate, in bursts, or both.
 struct InletParticles {
-  std::string patch;
-  double rate = 0.0;  ///< particles per second
+  std::string patch;                             ///< empty: the cone's point
+  double rate = 0.0;                             ///< particles per second
+  InletProfile profile = InletProfile::uniform;  ///< of a patch
+  std::optional<InletCone> cone = {};            ///< instead of a patch
+  Waveform waveform = {};                        ///< of the rate
+  std::vector<double> burst_times = {};          ///< s
+  std::uint64_t burst_count = 0;                 ///< particles that enter at each of these times, together
 };
 
 /// Particles of one kind: where they start, and how.
@@ -136,6 +166,7 @@ struct ParticlesScene {
   Vec3 velocity;
   double radius = 0.0;
   std::vector<double> user_data;  ///< of each particle, a number for each name in Scene::user_data; empty: zeros
+  bool with_field = false;        ///< they start with the field's velocity at their places, instead of `velocity`
 };
 
 /// Where a body has its particles: in a solid filled by spheres, on its surface, or in its volume.

@@ -36,6 +36,7 @@ struct CatheterScene;
 struct SolidScene;
 struct Event;
 struct EventLog;
+struct ParticlesScene;
 struct RemeshScene;
 struct ResolvedScene;
 struct Scene;
@@ -236,8 +237,7 @@ class Simulation {
  public:
   using AfterEdit = std::function<void(const Environment&)>;
 
-  /// `environment` outlives the simulation, and is moved and edited by it alone. Throws InvalidArgument if an option
-  /// is out of range, or names no patch.
+  /// `environment` outlives the simulation, which alone moves and edits it. Throws InvalidArgument for a bad option.
   explicit Simulation(Environment& environment, const SimulationOptions& options = {});
   /// Makes the environment, and all that the scene has in it. The scene is plain data: files that it names have been
   /// read (load_scene_files() in dartcast/scene_file.hpp). Throws InvalidArgument if one has not been; InvalidMesh;
@@ -255,8 +255,7 @@ class Simulation {
   void set_field(VelocityField field);
   /// Accelerations of all particles (m / s^2), on top of gravity. They have no effect if there is a field and no drag.
   void set_force(VectorField force);
-  /// Throws InvalidArgument if the deformation is made for another number of points, and in the plane as
-  /// Deformation::check_plane().
+  /// Throws InvalidArgument if it is made for another number of points, and as Deformation::check_plane().
   void set_deformation(Deformation deformation);
   /// Injects `rate` particles a second at random places of a patch, from the next step on. Throws as add(). Throws
   /// InvalidArgument if the patch has no face at a free cell, or the rate is negative or above 2^31 a step.
@@ -265,8 +264,7 @@ class Simulation {
 
   /// Adds particles at these positions, as Environment::add(). `radius`: as is_radius(). A sphere that does not fit is
   /// moved out of walls by its first step, and out of other spheres little by little. `user_data`: of each of these
-  /// particles, a number for each name in the options; empty: zeros. Throws InvalidArgument, nothing added, if
-  /// a value is out of range.
+  /// particles, a number for each name in the options; empty: zeros. Throws InvalidArgument, nothing added, for a bad one.
   std::vector<AddResult> add(std::span<const Vec3> positions, const Vec3& velocity, double radius = 0.0,
                              std::span<const double> user_data = {});
   std::vector<AddResult> add(std::initializer_list<Vec3> positions, const Vec3& velocity, double radius = 0.0);
@@ -277,9 +275,11 @@ class Simulation {
   /// free or the count is beyond 2^31, or as add().
   void add_random(std::size_t count, const Vec3& velocity, double radius = 0.0, std::span<const double> user_data = {});
 
-  /// Adds a body of these particles, as Bodies::add(). Throws as that, and InvalidArgument if there are collisions
-  /// and substeps are not 1.
+  /// Adds a body of these particles, as Bodies::add(). Throws as that, and InvalidArgument if collisions have substeps.
   AddBodyResult add_body(std::span<const Vec3> points, const BodyOptions& options);
+  /// Adds a group of particles or an inlet (dartcast/scene.hpp), as add(), add_random() and add_inlet(). Throws as these,
+  /// and InvalidArgument, nothing added, if a member is out of range, or it needs a field and there is none.
+  void add(const ParticlesScene& group);
   /// Adds a body or a catheter that is plain data. Throws Error that names it if it does not fit in.
   void add(const BodyScene& body);
   void add(const CatheterScene& catheter);

@@ -162,7 +162,9 @@ void bind_adding(Class& simulation) {
            about("Simulation::add",
                  "positions: float64 (n, 3). velocity: three numbers, or float64 (n, 3). radius: a number, or float64 "
                  "(n,). user_data: a number for each name, the same for all of these particles. Returns as "
-                 "Environment.add(). Instead of positions, a BodyScene, a CatheterScene or a SolidScene."))
+                 "Environment.add(). Instead of positions, a ParticlesScene, a BodyScene, a CatheterScene or a "
+                 "SolidScene."))
+      .def("add", &add_scene<ParticlesScene>, py::arg("group"))
       .def("add", &add_scene<CatheterScene>, py::arg("catheter"))
       .def("add", &add_scene<SolidScene>, py::arg("solid"))
       .def("add", &add, py::arg("positions"), py::arg("velocity"), py::arg("radius") = 0.0,

@@ -23,7 +23,7 @@ constexpr std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> count
 }
 
 /// Uses of random numbers: those of one never shift or repeat those of another. The values are part of every result.
-enum class RandomPurpose : std::uint32_t { place = 1 };
+enum class RandomPurpose : std::uint32_t { place = 1, direction = 8 };
 
 /// The numbers drawn for one item: a function of the seed, the purpose, the item's id and the number of the draw. The
 /// item with id k gets the same ones from every caller, and whatever was drawn for others.

@@ -31,7 +31,7 @@ class SceneReader {
     root.require("environment", "say [environment] with mesh = \"FILE\" or generator = \"box\"");
     scene.environment = read_environment(root.table("environment"), folder_);
     for (TomlTable& t : root.tables("deformation")) scene.deformation.push_back(deformation(t));
-    for (TomlTable& t : root.tables("particles")) scene.particles.push_back(particles(t));
+    for (TomlTable& t : root.tables("particles")) scene.particles.push_back(read_particles(t, folder_));
     for (TomlTable& t : root.tables("body"))
       add_named(t, scene.bodies, read_body(t, folder_, scene.bodies.size() + 1, scene.seed));
     for (TomlTable& t : root.tables("catheter"))
@@ -39,6 +39,7 @@ class SceneReader {
     for (TomlTable& t : root.tables("solid"))
       add_named(t, scene.solids, read_solid(t, folder_, scene.solids.size() + 1));
     scene.motion = motion(root.table("motion"));
+    check_field_of_particles(root, scene);
     scene.contact = contact(root.table("contact"));
     if (root.has("collisions")) collisions(root.table("collisions"), scene);
     for (TomlTable& t : root.tables("event")) scene.events.push_back(read_event(t));
@@ -130,27 +131,16 @@ class SceneReader {
     for (const std::string& file : files) scene.frames.push_back(folder_ / file);
   }
 
-  ParticlesScene particles(TomlTable& t) const {
-    ParticlesScene scene;
-    t.get("radius", scene.radius, Range::not_negative);
-    t.get("velocity", scene.velocity);
-    std::uint64_t count = 0;
-    std::string positions;
-    InletParticles inlet;
-    const int sources = (t.get("count", count, 0, 0xfffffffeU) ? 1 : 0) + (t.get("positions", positions) ? 1 : 0) +
-                        (t.get("inlet", inlet.patch) ? 1 : 0);
-    const bool has_rate = t.get("rate", inlet.rate, Range::not_negative);
-    if (sources != 1) t.fail("", "give one of count, positions, or inlet with rate");
-    if (has_rate == inlet.patch.empty()) t.fail("rate", "inlet and rate (particles per second) belong together");
-    if (!positions.empty()) {
-      scene.source = PlacedParticles{folder_ / positions};
-    } else if (!inlet.patch.empty()) {
-      scene.source = inlet;
-    } else {
-      scene.source = RandomParticles{count};
+  // [motion] is read after them.
+  static void check_field_of_particles(TomlTable& root, const Scene& scene) {
+    if (scene.motion.field.given()) return;
+    const std::vector<TomlTable> tables = root.tables("particles");
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+      const auto* inlet = std::get_if<InletParticles>(&scene.particles[i].source);
+      const bool by_flux = inlet != nullptr && inlet->profile == InletProfile::flux;
+      if (scene.particles[i].with_field || by_flux)
+        tables[i].fail(by_flux ? "profile" : "velocity", "it needs a field: give [motion] field");
     }
-    t.finish();
-    return scene;
   }
 
   // Names are those of files.

@@ -13,6 +13,9 @@ namespace dartcast {
 /// [environment]: a mesh file or a generator with its parameters, free cells, patches.
 EnvironmentScene read_environment(TomlTable table, const std::filesystem::path& folder);
 
+/// One [[particles]].
+ParticlesScene read_particles(TomlTable& t, const std::filesystem::path& folder);
+
 /// The keys `field`, `force` and `integrator`, and those that belong to them, after all others of [motion].
 void read_fields(TomlTable& motion, const std::filesystem::path& folder, MotionScene& scene);
 

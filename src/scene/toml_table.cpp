@@ -45,6 +45,11 @@ bool TomlTable::is_table(std::string_view key) {
   return node != nullptr && node->is_table();
 }
 
+bool TomlTable::is_text(std::string_view key) {
+  const toml::node* node = find(key);
+  return node != nullptr && node->is_string();
+}
+
 double TomlTable::number(std::string_view key, const toml::node& node) const {
   const auto value = node.value<double>();
   if (!value || node.is_boolean()) fail(key, fmt::format("{} must be a number; here is a {}", key, type_name(node)));

@@ -40,6 +40,7 @@ class TomlTable {
 
   bool has(std::string_view key);
   bool is_table(std::string_view key);
+  bool is_text(std::string_view key);
   bool get(std::string_view key, double& value, Range range);
   bool get(std::string_view key, bool& value);
   bool get(std::string_view key, std::string& value);

@@ -1,6 +1,8 @@
 // The velocities that gravity, drag and the flow give to particles, and the targets that these lead to.
 #include "simulation/aiming.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
@@ -36,6 +38,46 @@ void Aiming::load_step() {
         "simulation: the integrator rk4 follows a velocity field, but there is none: call set_field()");
   if (field_) field_->hold(motion_.time(), motion_.time() + options_.dt);
   if (force_) force_->hold(motion_.time(), motion_.time() + options_.dt);
+}
+
+void Aiming::check_field(std::string_view what) const {
+  if (!field_)
+    throw InvalidArgument(
+        fmt::format("simulation: {} needs a velocity field, but there is none: call set_field()", what));
+}
+
+void Aiming::set_field_time(double time) {
+  field_->set_times(std::span(&time, 1), environment_.complex(), environment_.threads());
+}
+
+Vec3 Aiming::flow_at_corner(SimplexId at, unsigned corner) const {
+  const CellComplex& complex = environment_.complex();
+  const Corners now = complex.corners(at);
+  Weights w{};
+  w[corner] = 1.0;
+  const Vec3 flow = field_->at(complex, at, w, now);
+  if (field_->frame() == FieldFrame::mesh || !motion_.deforms()) return flow;
+  return flow - (now[corner] - complex.previous_corners(at)[corner]) * (1.0 / options_.dt);
+}
+
+void Aiming::start_with_field(ParticleSet& set, std::size_t first, double time) {
+  check_field("a start with the field's velocity");
+  set_field_time(time);
+  const CellComplex& complex = environment_.complex();
+  const bool carries = field_->frame() == FieldFrame::mesh && motion_.deforms();
+  const std::span<Vec3> velocities = set.velocities();
+  parallel_for(velocities.size() - first, aim_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = first + begin; i < first + end; ++i) {
+      const ParticleState& s = set.states[i];
+      if (s.held) continue;
+      const Corners now = complex.corners(s.at());
+      const Weights w = detail::barycentric(now, s.position);
+      velocities[i] = field_->at(complex, s.at(), w, now);
+      if (!carries) continue;
+      const Vec3 moved = detail::combine(now, w) - detail::combine(complex.previous_corners(s.at()), w);
+      velocities[i] += moved * (1.0 / options_.dt);
+    }
+  });
 }
 
 void Aiming::set_times(double begin, double duration) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,14 @@ class Aiming {
 
   void set_field(VelocityField field) { field_ = std::move(field); }
   void set_force(VectorField force) { force_ = std::move(force); }
+  /// Throws InvalidArgument if there is no field. `what` needs it.
+  void check_field(std::string_view what) const;
+  /// Brings the field alone to a time.
+  void set_field_time(double time);
+  /// The field at a corner of a simplex, relative to the mesh. Precondition: it stands at the time.
+  [[nodiscard]] Vec3 flow_at_corner(SimplexId at, unsigned corner) const;
+  /// Gives particles from this one on the field's velocity at their places. Throws as check_field().
+  void start_with_field(ParticleSet& set, std::size_t first, double time);
   /// Reads what the next step needs of the fields' files, before that step changes anything. Throws as
   /// VectorField::hold(), and InvalidArgument if an integrator has no field to follow.
   void load_step();

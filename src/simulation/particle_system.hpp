@@ -23,6 +23,7 @@
 namespace dartcast {
 
 class Inlets;
+struct InletCone;
 
 /// Its step also moves the vertices: with collisions between the spheres' impulses and their walk. A function with the name
 /// of one of Simulation's does the work of that function.
@@ -90,6 +91,7 @@ class ParticleSystem final : public SimulationComponent {
   std::vector<AddResult> add_own(std::span<const Vec3> positions);
   template <class Sampler>
   void add_sampled(const Sampler& sampler, std::uint64_t count, const NewParticle& particle);
+  void send_out(const InletCone& cone, std::size_t first);
   // In particle_system_part.cpp.
   [[nodiscard]] ParticleState whole_state(std::size_t i) const;
   StepReport advance_in_part(const Acceleration& acceleration, std::vector<std::uint8_t>& departed);

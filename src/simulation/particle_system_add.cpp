@@ -77,6 +77,13 @@ void ParticleSystem::add_sampled(const Sampler& sampler, std::uint64_t count, co
   });
 }
 
+void ParticleSystem::send_out(const InletCone& cone, std::size_t first) {
+  for (std::size_t i = first; i < set_.states.size(); ++i) {
+    KeyedRandom random(options_.seed, RandomPurpose::direction, set_.ids()[i]);
+    set_.velocities()[i] = direction_in(cone, environment_.map().dimension(), random) * cone.speed;
+  }
+}
+
 void ParticleSystem::add_random(std::size_t count, const NewParticle& particle) {
   check_count(count);
   check(particle, environment_, options_, "a particle's");
@@ -90,9 +97,12 @@ void ParticleSystem::inject(Inlets& inlets) {
   last_.duration = options_.dt;
   last_.absorbed = std::exchange(edited_.since_step, 0);
   const ScopeTimer timer(totals_.seconds_respond);
-  inlets.inject([this](const PatchSampler& sampler, std::uint64_t count, const NewParticle& particle) {
-    add_sampled(sampler, count, particle);
-    last_.injected += count;
+  inlets.inject(sampled_part(), [this](const Injection& in) {
+    const std::size_t first = set_.states.size();  // ids increase: the new ones stand behind all others
+    std::visit([&](const auto* sampler) { add_sampled(*sampler, in.count, in.particle); }, in.sampler);
+    if (in.cone != nullptr) send_out(*in.cone, first);
+    if (in.with_field) aiming_.start_with_field(set_, first, motion_.time());
+    last_.injected += in.count;
   });
   totals_.injected += last_.injected;
 }

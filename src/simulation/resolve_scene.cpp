@@ -116,20 +116,6 @@ std::vector<Event> events_of(const Scene& scene, const MeshData& mesh, const Com
   return events;
 }
 
-void add_particles(ResolvedScene& resolved, const ParticlesScene& scene) {
-  const NewParticle particle = {scene.velocity, scene.radius, scene.user_data};
-  if (const auto* inlet = std::get_if<InletParticles>(&scene.source)) {
-    resolved.inlets.push_back({resolved.environment->map().patch(inlet->patch), inlet->rate, particle});
-  } else if (const auto* random = std::get_if<RandomParticles>(&scene.source)) {
-    resolved.particles.push_back({random->count, nullptr, particle});
-  } else {
-    const auto* seeds = std::get_if<ParticleSeeds>(&std::get<PlacedParticles>(scene.source).positions);
-    if (seeds == nullptr)
-      throw InvalidArgument("the particles' positions have not been read; call load_scene_files() first");
-    resolved.particles.push_back({0, seeds, particle});
-  }
-}
-
 // The mesh of a scene that has been loaded is taken as it is.
 bool is_ready(const EnvironmentScene& scene) {
   return std::holds_alternative<MeshData>(scene.mesh) && scene.scale == 1.0 && !scene.skip_bad_cells &&
@@ -143,7 +129,6 @@ void resolve_on(const MeshData& mesh, const Scene& scene, Threads threads, Resol
   if (resolved.part) points = resolved.part->points;
   resolved.motion = motion_of(scene, mesh, complex, points);
   resolved.events = events_of(scene, mesh, complex.map());
-  for (const ParticlesScene& p : scene.particles) add_particles(resolved, p);
 }
 
 // Without the mesh of the scene, which is the part from now on.
@@ -163,6 +148,7 @@ ResolvedScene resolve(const Scene& scene, Threads threads, Ranks* ranks, Partiti
   resolved.remesh = scene.remesh;
   resolved.adaptive_subdivision = scene.adaptive_subdivision;
   resolved.statistics = scene.statistics.options;
+  resolved.particles = scene.particles;
   resolved.bodies = scene.bodies;
   resolved.catheters = scene.catheters;
   resolved.solids = scene.solids;

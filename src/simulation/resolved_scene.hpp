@@ -15,7 +15,6 @@
 #include "dartcast/scene.hpp"
 #include "dartcast/simulation.hpp"
 #include "dartcast/vector_field.hpp"
-#include "simulation/particle_set.hpp"
 
 namespace dartcast {
 
@@ -26,20 +25,7 @@ struct ResolvedMotion {
   std::optional<Deformation> deformation;
 };
 
-struct ResolvedInlet {
-  Patch patch;
-  double rate = 0.0;
-  NewParticle particle;
-};
-
-/// Particles at the start: at random places, or where the seeds say.
-struct ResolvedParticles {
-  std::size_t random = 0;
-  const ParticleSeeds* seeds = nullptr;
-  NewParticle particle;
-};
-
-/// Spans and pointers are into the scene, which outlives it.
+/// Spans are into the scene, which outlives it.
 struct ResolvedScene {
   std::unique_ptr<Environment> environment;
   std::optional<MeshPart> part;  ///< of which the environment is made; none: it is whole
@@ -47,12 +33,11 @@ struct ResolvedScene {
   ResolvedMotion motion;
   std::function<ResolvedMotion(const MeshPart&, const CellComplex&)>
       motion_of_part;  ///< of any part; none: it is whole
-  std::vector<ResolvedInlet> inlets;
-  std::vector<ResolvedParticles> particles;
   std::vector<Event> events;
   RemeshScene remesh;
   AdaptiveSubdivisionScene adaptive_subdivision;
   StatisticsOptions statistics;
+  std::span<const ParticlesScene> particles;
   std::span<const BodyScene> bodies;
   std::span<const CatheterScene> catheters;
   std::span<const SolidScene> solids;

@@ -76,7 +76,8 @@ void check_patches(const Scene& scene, const MeshData& mesh) {
   if (const auto* names = std::get_if<std::vector<std::string>>(&scene.environment.patches)) named = *names;
   for (const auto& entry : scene.contact.by_patch) named.push_back(entry.first);
   for (const ParticlesScene& p : scene.particles) {
-    if (const auto* inlet = std::get_if<InletParticles>(&p.source)) named.push_back(inlet->patch);
+    const auto* inlet = std::get_if<InletParticles>(&p.source);
+    if (inlet != nullptr && !inlet->patch.empty()) named.push_back(inlet->patch);
   }
   expect_walls(mesh, named);
 }

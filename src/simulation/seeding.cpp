@@ -15,6 +15,7 @@
 #include "base/reduced.hpp"
 #include "complex/simplex.hpp"
 #include "dartcast/error.hpp"
+#include "dartcast/predicates.hpp"
 
 namespace dartcast {
 
@@ -229,6 +230,33 @@ Vec3 on_facet(unsigned dimension, const Corners& v, unsigned facet, const std::a
   return v[f[0]] * w[0] + v[f[1]] * w[1] + v[f[2]] * w[2];
 }
 
+// Of the facet's k-th corner in its simplex.
+unsigned corner_of(unsigned dimension, unsigned facet, unsigned k) {
+  return dimension == 2 ? plane_facet_corners[facet][k] : facet_corners[facet][k];
+}
+
+// As long as facet_size().
+Vec3 inward_normal(unsigned dimension, const Corners& v, unsigned facet) {
+  const Vec3 a = v[corner_of(dimension, facet, 0)];
+  const Vec3 b = v[corner_of(dimension, facet, 1)] - a;
+  const Vec3 normal = dimension == 2 ? Vec3{-b.y, b.x, 0.0} : cross(b, v[corner_of(dimension, facet, 2)] - a);
+  return dot(normal, v[facet] - a) < 0.0 ? -normal : normal;
+}
+
+// The corner that a number in [0, 1) chooses, by their shares.
+std::size_t corner_at(const std::array<double, 3>& shares, unsigned corners, double choice) {
+  double left = choice * (shares[0] + shares[1] + shares[2]);
+  std::size_t k = 0;
+  while (k + 1 < corners && left >= shares[k]) left -= shares[k++];
+  return k;
+}
+
+template <std::size_t N>
+void put_random_weights(KeyedRandom& random, std::array<double, 4>& to) {
+  const auto weights = random_weights<N>(random);
+  std::copy(weights.begin(), weights.end(), to.begin());
+}
+
 }  // namespace
 
 PatchSampler::PatchSampler(const CellComplex& complex, Patch patch, const std::optional<SampledPart>& part)
@@ -274,36 +302,72 @@ void PatchSampler::update_after_edit(const CellComplex& complex, const ComplexEd
 
 void PatchSampler::update(const CellComplex& complex) {
   std::vector<double> areas;
-  std::vector<Cell> cells;
-  for (const Triangle& t : triangles_) {
+  for (const Triangle& t : triangles_)
     areas.push_back(facet_size(complex.map().dimension(), complex.corners(t.simplex), t.facet));
-    cells.push_back(t.simplex.cell);
-  }
-  const FixedPointScale scale =
-      scale_of(areas.empty() ? 0.0 : *std::max_element(areas.begin(), areas.end()), areas.size(), part_);
-  std::vector<std::uint64_t> sizes;
-  for (const double area : areas) sizes.push_back(scale(area));
-  areas_ = SizeTable(std::move(sizes), cells, part_);
+  by_flux_ = false;
+  set_sizes(areas);
 }
 
-// If all areas are 0, the last triangle.
-std::optional<Sample> PatchSampler::sample(const CellComplex& complex, KeyedRandom& random) const {
-  const std::uint64_t place = random.below(areas_.length());
+bool PatchSampler::update(const CellComplex& complex, const FlowAtCorner& flow) {
   const unsigned dimension = complex.map().dimension();
-  std::array<double, 3> w{};
-  if (dimension == 2) {
-    const auto two = random_weights<2>(random);
-    std::copy(two.begin(), two.end(), w.begin());
-  } else {
-    w = random_weights<3>(random);
+  std::vector<double> fluxes;
+  inflow_.clear();
+  for (const Triangle& t : triangles_) {
+    const Vec3 normal = inward_normal(dimension, complex.corners(t.simplex), t.facet);
+    std::array<double, 3>& inflow = inflow_.emplace_back();
+    for (unsigned k = 0; k < dimension; ++k)
+      inflow[k] = std::max(0.0, dot(normal, flow(t.simplex, corner_of(dimension, t.facet, k))));
+    fluxes.push_back(inflow[0] + inflow[1] + inflow[2]);
   }
-  std::optional<std::size_t> entry = areas_.entry_at(place);
-  if (!entry && areas_.length() == 0 && !triangles_.empty()) entry = triangles_.size() - 1;
+  by_flux_ = true;
+  set_sizes(fluxes);
+  return sizes_.length() > 0;
+}
+
+void PatchSampler::set_sizes(const std::vector<double>& sizes) {
+  std::vector<Cell> cells;
+  for (const Triangle& t : triangles_) cells.push_back(t.simplex.cell);
+  const FixedPointScale scale =
+      scale_of(sizes.empty() ? 0.0 : *std::max_element(sizes.begin(), sizes.end()), sizes.size(), part_);
+  std::vector<std::uint64_t> scaled;
+  for (const double size : sizes) scaled.push_back(scale(size));
+  sizes_ = SizeTable(std::move(scaled), cells, part_);
+}
+
+// By area: if all areas are 0, the last triangle. Every rank takes as many numbers, so that all draw again alike.
+std::optional<Sample> PatchSampler::sample(const CellComplex& complex, KeyedRandom& random) const {
+  const std::uint64_t place = random.below(sizes_.length());
+  const unsigned dimension = complex.map().dimension();
+  std::array<double, 4> gaps{};
+  const std::size_t count = dimension + (by_flux_ ? 1 : 0);
+  if (count == 2) put_random_weights<2>(random, gaps);
+  if (count == 3) put_random_weights<3>(random, gaps);
+  if (count == 4) put_random_weights<4>(random, gaps);
+  const double corner = by_flux_ ? random.uniform() : 0.0;
+  std::optional<std::size_t> entry = sizes_.entry_at(place);
+  if (!entry && sizes_.length() == 0 && !triangles_.empty()) entry = triangles_.size() - 1;
   if (!entry) return {};
+  // A density that is linear in the triangle is a mixture of those that are 1 at one corner and 0 at the others. One of
+  // these is that of the corner's share of the gaps between random cuts, if it has two of them and the others one.
+  std::array<double, 3> w = {gaps[0], gaps[1], gaps[2]};
+  if (by_flux_) {
+    if (dimension == 2) w[2] = 0.0;
+    w[corner_at(inflow_[*entry], dimension, corner)] += gaps[count - 1];
+  }
   const Triangle& t = triangles_[*entry];
   const Corners v = complex.corners(t.simplex);
   const Vec3 on_face = on_facet(dimension, v, t.facet, w);
   return Sample{t.simplex, on_face + (v[t.facet] - on_face) * 0x1p-6};
+}
+
+// Nothing is drawn again: the position is exact.
+PointSampler::PointSampler(Environment& environment, const Vec3& at, const std::optional<SampledPart>& part) {
+  const Location found = environment.locate(flushed(at));
+  const bool own = found.place == Place::free && (!part || part->cells.is_own(found.simplex.cell));
+  if (own) sample_ = Sample{found.simplex, flushed(at)};
+  std::uint64_t count = own ? 1 : 0;
+  if (part) part->ranks.sum({&count, 1});
+  empty_ = count == 0;
 }
 
 namespace {
@@ -360,6 +424,8 @@ std::vector<std::uint64_t> place(const Placing& placing, Particles& particles, c
 template std::vector<std::uint64_t> place(const Placing&, Particles&, const VolumeSampler&, std::uint64_t,
                                           std::uint64_t);
 template std::vector<std::uint64_t> place(const Placing&, Particles&, const PatchSampler&, std::uint64_t,
+                                          std::uint64_t);
+template std::vector<std::uint64_t> place(const Placing&, Particles&, const PointSampler&, std::uint64_t,
                                           std::uint64_t);
 
 }  // namespace dartcast

@@ -1,7 +1,9 @@
 // Where new particles are put: at random in the free cells, or just inside a patch of walls.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -85,8 +87,11 @@ class VolumeSampler {
   SizeTable volumes_;
 };
 
-/// Points of equal likelihood by area on a patch's faces, moved inwards by 1/64 of the way to the opposite corner of
-/// the simplex there.
+/// The velocity of a fluid relative to the mesh at a corner of a simplex.
+using FlowAtCorner = std::function<Vec3(SimplexId simplex, unsigned corner)>;
+
+/// Points of equal likelihood by area on a patch's faces, or by the volume that flows in through them. They are moved
+/// inwards by 1/64 of the way to the opposite corner of the simplex there.
 class PatchSampler {
  public:
   /// Throws InvalidArgument if the patch has no face at a free cell. Cost: linear in the cells.
@@ -95,6 +100,9 @@ class PatchSampler {
   void update_after_edit(const CellComplex& complex, const ComplexEditReport& edit);
   /// Takes the areas at the complex's current positions. Cost: the patch's faces.
   void update(const CellComplex& complex);
+  /// Takes the flux into the mesh instead: linear on each triangle, and 0 at corners with a flow out of the mesh. Returns
+  /// whether anything flows in; the sampler is of no use if not. Cost: likewise.
+  bool update(const CellComplex& complex, const FlowAtCorner& flow);
   /// Whether the patch has no face at a free cell.
   [[nodiscard]] bool empty() const { return !part_ && triangles_.empty(); }
   /// None: on another rank's face. Precondition: it is not empty.
@@ -107,10 +115,31 @@ class PatchSampler {
     SimplexId simplex;
     std::uint16_t facet;
   };
+  void set_sizes(const std::vector<double>& sizes);
+
   Patch patch_;
   std::optional<SampledPart> part_;
   std::vector<Triangle> triangles_;
-  SizeTable areas_;
+  SizeTable sizes_;
+  bool by_flux_ = false;
+  std::vector<std::array<double, 3>> inflow_;  // by flux: of each triangle, at its corners, up to one factor for all
+};
+
+/// One point for all particles.
+class PointSampler {
+ public:
+  /// Collective if there is a part. Cost: as Environment::locate(), whose first call after a move is linear in the cells.
+  PointSampler(Environment& environment, const Vec3& at, const std::optional<SampledPart>& part);
+  /// Whether the point is in no free cell.
+  [[nodiscard]] bool empty() const { return empty_; }
+  /// None: in another rank's cell.
+  [[nodiscard]] std::optional<Sample> sample(const CellComplex& /*complex*/, KeyedRandom& /*random*/) const {
+    return sample_;
+  }
+
+ private:
+  std::optional<Sample> sample_;
+  bool empty_ = true;
 };
 
 struct Placing {

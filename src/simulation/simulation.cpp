@@ -5,6 +5,7 @@
 
 #include "base/are_several.hpp"
 #include "dartcast/error.hpp"
+#include "dartcast/scene.hpp"
 #include "dartcast/validity.hpp"
 #include "simulation/balance.hpp"
 #include "simulation/gathered_step.hpp"
@@ -139,8 +140,9 @@ void Simulation::pull(std::span<const Vec3> displacement, double duration) {
 
 void Simulation::add_inlet(Patch patch, double rate, const Vec3& velocity, double radius,
                            std::span<const double> user_data) {
+  const ParticlesScene group{{}, velocity, radius, {user_data.begin(), user_data.end()}};
+  parts_->inlets.add(group, InletParticles{{}, rate}, patch, parts_->particles.sampled_part());
   parts_->motion_of_part = {};
-  parts_->inlets.add(patch, rate, {velocity, radius, user_data}, parts_->particles.sampled_part());
 }
 
 std::vector<AddResult> Simulation::add(std::span<const Vec3> positions, const Vec3& velocity, double radius,

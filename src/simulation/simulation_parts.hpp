@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -25,7 +26,7 @@ struct Simulation::Parts {
         environment(used),
         motion(used, followers, options.dt),
         particles(used, followers, motion, options),
-        inlets(used, followers, motion, particles.options()),
+        inlets(used, followers, motion, particles.aiming(), particles.options()),
         solids(used, motion, options.dt),
         bodies(used, particles.options(), particles.responses()),
         catheters(used, options.dt),
@@ -47,6 +48,13 @@ struct Simulation::Parts {
     part = std::make_unique<PartEnvironment>(environment, mesh, *particles.options().ranks);
     part_mesh = std::make_unique<MeshPart>(std::move(mesh));
     particles.set_part(*part);
+  }
+
+  /// Adds the inlet of a group. Throws as Inlets::add().
+  void add_inlet(const ParticlesScene& group, const InletParticles& inlet) {
+    std::optional<Patch> patch;
+    if (!inlet.cone) patch = environment.map().patch(inlet.patch);
+    inlets.add(group, inlet, patch, particles.sampled_part());
   }
 
   /// Sets all that belongs to the points of the mesh.

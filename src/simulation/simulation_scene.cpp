@@ -18,16 +18,16 @@ void check_place(const ParticleSeeds& seeds, std::size_t i, Place place) {
                           place == Place::blocked ? "in a blocked cell" : "outside the mesh"));
 }
 
-void add_particles(Simulation& simulation, const ResolvedParticles& particles) {
-  const auto& [velocity, radius, user_data] = particles.particle;
-  if (particles.seeds == nullptr) return simulation.add_random(particles.random, velocity, radius, user_data);
-  const ParticleSeeds& seeds = *particles.seeds;
-  std::vector<Vec3> velocities = seeds.velocities;
-  std::vector<double> radii = seeds.radii;
-  if (velocities.empty()) velocities.assign(seeds.points.size(), velocity);
-  if (radii.empty()) radii.assign(seeds.points.size(), radius);
-  const auto added = simulation.add(seeds.points, velocities, radii, user_data);
-  for (std::size_t i = 0; i < added.size(); ++i) check_place(seeds, i, added[i].location.place);
+void add_placed(Simulation& simulation, const ParticlesScene& group, const PlacedParticles& placed) {
+  const auto* seeds = std::get_if<ParticleSeeds>(&placed.positions);
+  if (seeds == nullptr)
+    throw InvalidArgument("the particles' positions have not been read; call load_scene_files() first");
+  std::vector<Vec3> velocities = seeds->velocities;
+  std::vector<double> radii = seeds->radii;
+  if (velocities.empty()) velocities.assign(seeds->points.size(), group.velocity);
+  if (radii.empty()) radii.assign(seeds->points.size(), group.radius);
+  const auto added = simulation.add(seeds->points, velocities, radii, group.user_data);
+  for (std::size_t i = 0; i < added.size(); ++i) check_place(*seeds, i, added[i].location.place);
 }
 
 }  // namespace
@@ -46,14 +46,34 @@ void Simulation::build(ResolvedScene& scene) {
   for (const BodyScene& body : scene.bodies) add(body);
   for (const CatheterScene& catheter : scene.catheters) add(catheter);
   for (const SolidScene& solid : scene.solids) add(solid);
-  for (const ResolvedInlet& inlet : scene.inlets)
-    parts_->inlets.add(inlet.patch, inlet.rate, inlet.particle, parts_->particles.sampled_part());
+  for (const ParticlesScene& group : scene.particles) {
+    if (const auto* inlet = std::get_if<InletParticles>(&group.source)) parts_->add_inlet(group, *inlet);
+  }
+}
+
+void Simulation::add(const ParticlesScene& group) {
+  ParticleSystem& particles = parts_->particles;
+  if (const auto* inlet = std::get_if<InletParticles>(&group.source)) {
+    parts_->add_inlet(group, *inlet);
+    parts_->motion_of_part = {};
+    return;
+  }
+  if (group.with_field) particles.aiming().check_field("particles with the field's velocity");
+  const std::size_t first = particles.set().states.size();
+  if (const auto* placed = std::get_if<PlacedParticles>(&group.source)) {
+    add_placed(*this, group, *placed);
+  } else {
+    add_random(std::get<RandomParticles>(group.source).count, group.velocity, group.radius, group.user_data);
+  }
+  if (group.with_field) particles.aiming().start_with_field(particles.set(), first, time());
 }
 
 Simulation::Simulation(const Scene& scene, Threads threads, Ranks* ranks, Partition partition) {
   ResolvedScene resolved = resolve(scene, threads, ranks, partition);
   build(resolved);
-  for (const ResolvedParticles& p : resolved.particles) add_particles(*this, p);
+  for (const ParticlesScene& group : resolved.particles) {
+    if (!std::holds_alternative<InletParticles>(group.source)) add(group);
+  }
 }
 
 Simulation::Simulation(const Scene& scene, const SimulationCheckpoint& saved, Threads threads, AfterEdit after_edit,
