@@ -246,6 +246,10 @@ struct FieldScene {
   [[nodiscard]] bool given() const { return !array.empty() || samples.read; }
 };
 
+/// The name of a component: that of the array if it has one; else with _x, _y, _z behind it (3), _xx, _xy, _xz, _yy, _yz,
+/// _zz (6), _xx, _xy, _xz, _yx ... (9), or _0, _1 ...
+std::string component_name(const std::string& array, std::size_t components, std::size_t k);
+
 /// Time steps, and the forces on particles.
 struct MotionScene {
   double dt = 1e-3;
@@ -253,6 +257,11 @@ struct MotionScene {
   Vec3 gravity;
   FieldScene field;  ///< velocities, m / s
   FieldScene force;  ///< accelerations, m / s^2, on top of gravity
+  /// Arrays whose values particles take at their places, as numbers of user data: one for each component, named as
+  /// component_name(). They are where the field's arrays are, in its files or in the mesh, at the same times.
+  std::vector<std::string> sample = {};
+  /// load_scene_files() makes these of `sample`, if the field has files; then `sample` is empty.
+  std::vector<ArraySamples> sampled = {};
   double drag = 0.0;
   unsigned substeps = 1;
   Integrator integrator = Integrator::euler;

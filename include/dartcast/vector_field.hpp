@@ -50,6 +50,15 @@ struct FieldSamples {
   /// that, the last sample should be the first one again.
   double period = 0.0;
   Interpolation interpolation = Interpolation::linear;
+  bool vectors = true;  ///< false: any three numbers, which in the plane may have a z
+};
+
+/// An array of any number of components at points or cells, three of them in each of the samples, in their order; behind
+/// the last component there are zeros.
+struct ArraySamples {
+  std::string name;
+  std::size_t components = 1;
+  std::vector<FieldSamples> parts;
 };
 
 /// Samples in memory, one list of values for each time.

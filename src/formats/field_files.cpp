@@ -89,6 +89,46 @@ class FieldFiles {
   OpenFoamPointVectors to_points_;
 };
 
+// Reads arrays that particles take, from the files of a field. All parts of an array come from one reading.
+class SampledFiles {
+ public:
+  SampledFiles(FieldFiles files, std::string array, std::optional<FieldPlace> at)
+      : files_(std::move(files)), array_(std::move(array)), at_(at) {}
+
+  const ArrayInMesh& operator()(std::size_t k) {
+    if (!last_ || at_sample_ != k) last_ = array_in_mesh(files_.read(k), array_, at_);
+    at_sample_ = k;
+    return *last_;
+  }
+
+ private:
+  FieldFiles files_;
+  std::string array_;
+  std::optional<FieldPlace> at_;
+  std::optional<ArrayInMesh> last_;
+  std::size_t at_sample_ = 0;
+};
+
+ArraySamples sampled_files(const FieldScene& field, const MeshData& mesh, const CellsOfScene& cells,
+                           const ReadOptions& options, const std::vector<std::filesystem::path>& names) {
+  auto files = std::make_shared<SampledFiles>(FieldFiles(field, mesh, cells, options, names), field.array, field.at);
+  const ArrayInMesh& first = (*files)(0);
+  ArraySamples samples{field.array, first.components, {}};
+  for (std::size_t part = 0; 3 * part < samples.components; ++part) {
+    FieldSamples& s = samples.parts.emplace_back();
+    s.place = first.place;
+    s.vectors = false;
+    s.read = [files, part, count = first.components, place = first.place, names](std::size_t k) {
+      const ArrayInMesh& read = (*files)(k);
+      if (read.components != count || read.place != place)
+        throw InvalidMesh(fmt::format("{}: the array has other components or another place than in the first file",
+                                      names[k].string()));
+      return three_components(read, part);
+    };
+  }
+  return samples;
+}
+
 // All times are arrays of one file, and are read at once.
 void read_arrays_of_file(FieldScene& field, const MeshData& mesh, const CellsOfScene& cells,
                          const ReadOptions& options) {
@@ -104,9 +144,17 @@ void read_arrays_of_file(FieldScene& field, const MeshData& mesh, const CellsOfS
 
 }  // namespace
 
-void read_field_files(FieldScene& field, const MeshData& mesh, const CellsOfScene& cells, const ReadOptions& options) {
+void read_field_files(FieldScene& field, const MeshData& mesh, const CellsOfScene& cells, const ReadOptions& options,
+                      const std::vector<std::string>& sample, std::vector<ArraySamples>& sampled) {
   if (field.files.empty() || field.samples.read) return;
-  if (is_pattern(field.array)) return read_arrays_of_file(field, mesh, cells, options);
+  if (is_pattern(field.array)) {
+    if (!sample.empty())
+      throw InvalidArgument(
+          fmt::format("sample: the field '{}' is several arrays of a file, which have no others at "
+                      "their times: give it a file for each time",
+                      field.array));
+    return read_arrays_of_file(field, mesh, cells, options);
+  }
   const bool of_case = field.files.size() == 1 && is_openfoam_case(field.files.front());
   const bool steady = field.steady.value_or(of_case && is_steady_openfoam(field.files.front()));
   FieldSeries series = file_series({fmt::format("the field '{}'", field.array), field.array, field.files, field.times,
@@ -119,6 +167,17 @@ void read_field_files(FieldScene& field, const MeshData& mesh, const CellsOfScen
   field.samples.period = field.period;
   field.samples.interpolation = field.interpolation;
   field.samples.read = [files](std::size_t k) { return (*files)(k); };
+  for (const std::string& array : sample) {
+    FieldScene other = field;
+    other.array = array;
+    ArraySamples& samples = sampled.emplace_back(sampled_files(other, mesh, cells, options, series.files));
+    for (FieldSamples& s : samples.parts) {
+      s.name = fmt::format("the sampled array '{}'", array);
+      s.times = field.samples.times;
+      s.period = field.period;
+      s.interpolation = field.interpolation;
+    }
+  }
   field.files.clear();
 }
 
@@ -131,8 +190,9 @@ FrameReader displaced_frames(DeformationScene& scene, const MeshData& mesh, cons
   field.times = scene.step.times;
   field.spacing = scene.spacing;
   field.steady = false;
+  std::vector<ArraySamples> none;
   try {
-    read_field_files(field, mesh, cells, options);
+    read_field_files(field, mesh, cells, options, {}, none);
   } catch (const Error& e) {
     throw InvalidMesh(fmt::format("deformation: the displacement '{}': {}", scene.displacement, e.what()));
   }

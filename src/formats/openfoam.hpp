@@ -58,7 +58,7 @@ std::vector<Vec3> openfoam_cell_vectors(const std::filesystem::path& path, std::
 /// without slip. Weights are kept as long as the points stay.
 class OpenFoamPointVectors {
  public:
-  /// Of CASE/TIME, in the order of parse_openfoam()'s points. Throws likewise, and if there is no such field.
+  /// The field of CASE/TIME, in the order of parse_openfoam()'s points. Throws likewise, and if there is no such field.
   std::vector<Vec3> operator()(const std::filesystem::path& path, std::string_view field, const ReadOptions& options);
 
  private:

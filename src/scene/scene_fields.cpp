@@ -1,6 +1,7 @@
 // Reads the keys of a scene's fields.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,8 @@ void read_field(TomlTable& motion, const char* key, const std::filesystem::path&
 void read_fields(TomlTable& motion, const std::filesystem::path& folder, MotionScene& scene) {
   read_field(motion, "field", folder, scene.field);
   read_field(motion, "force", folder, scene.force);
+  if (motion.get("sample", scene.sample) && std::count(scene.sample.begin(), scene.sample.end(), "") != 0)
+    motion.fail("sample", "sample must be names of arrays");
   const bool has_field = scene.field.given();
   if (motion.is_table("field") && motion.has("field_frame"))
     motion.fail("field_frame", "field_frame belongs to a field that is a name: say frame in the field's table");

@@ -55,6 +55,8 @@ ReadOptions options_for_fields(const Scene& scene, ReadOptions options) {
     if (!field->array.empty() && field->files.empty() && field->at != FieldPlace::cells)
       options.point_fields.push_back(field->array);
   }
+  if (scene.motion.field.files.empty() && scene.motion.field.at != FieldPlace::cells)
+    options.point_fields.insert(options.point_fields.end(), scene.motion.sample.begin(), scene.motion.sample.end());
   return options;
 }
 
@@ -112,7 +114,11 @@ std::vector<Finding> read_all_but_mesh(Scene& scene, const MeshData* mesh, const
     s.step.reader = frame_reader(std::move(series.files), mesh, cells, scene.environment.scale, read, warnings);
   }
   if (mesh != nullptr) {
-    for (FieldScene* field : {&scene.motion.field, &scene.motion.force}) read_field_files(*field, *mesh, cells, read);
+    MotionScene& motion = scene.motion;
+    const bool in_files = !motion.field.files.empty();
+    read_field_files(motion.field, *mesh, cells, read, motion.sample, motion.sampled);
+    read_field_files(motion.force, *mesh, cells, read, {}, motion.sampled);
+    if (in_files) motion.sample.clear();
   }
   for (ParticlesScene& p : scene.particles) {
     auto* placed = std::get_if<PlacedParticles>(&p.source);

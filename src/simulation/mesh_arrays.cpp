@@ -56,25 +56,25 @@ std::vector<Vec3> as_vectors(std::span<const double> values) {
   return result;
 }
 
-// Arrays of vectors. Those at cells are brought to the points if they are wanted there; the weights are made once.
-class VectorArrays {
+// Arrays of a mesh. Those at cells are brought to the points if they are wanted there; the weights are made once.
+class PlacedArrays {
  public:
-  VectorArrays(const MeshData& mesh, std::optional<FieldPlace> at) : mesh_(mesh), at_(at) {}
+  PlacedArrays(const MeshData& mesh, std::optional<FieldPlace> at) : mesh_(mesh), at_(at) {}
 
-  [[nodiscard]] FieldPlace place(const std::string& name) const {
-    return from_cells(name) != nullptr ? FieldPlace::points : array_of(mesh_, name, at_).second;
+  [[nodiscard]] FieldPlace place(const std::string& name, std::size_t components = 3) const {
+    return from_cells(name, components) != nullptr ? FieldPlace::points : array_of(mesh_, name, at_, components).second;
   }
-  std::vector<Vec3> values(const std::string& name) {
-    const DataArray* const cells = from_cells(name);
-    if (cells == nullptr) return as_vectors(array_of(mesh_, name, at_).first.values);
+  std::vector<double> values(const std::string& name, std::size_t components = 3) {
+    const DataArray* const cells = from_cells(name, components);
+    if (cells == nullptr) return array_of(mesh_, name, at_, components).first.values;
     if (!weights_) weights_ = weights_of_cells(mesh_);
-    return as_vectors(values_at_points(*weights_, cells->values, 3));
+    return values_at_points(*weights_, cells->values, components);
   }
 
  private:
-  [[nodiscard]] const DataArray* from_cells(const std::string& name) const {
-    const bool wanted = at_ == FieldPlace::points && find_array(mesh_.point_data, name, 3) == nullptr;
-    return wanted ? find_array(mesh_.cell_data, name, 3) : nullptr;
+  [[nodiscard]] const DataArray* from_cells(const std::string& name, std::size_t components) const {
+    const bool wanted = at_ == FieldPlace::points && find_array(mesh_.point_data, name, components) == nullptr;
+    return wanted ? find_array(mesh_.cell_data, name, components) : nullptr;
   }
 
   const MeshData& mesh_;
@@ -104,23 +104,72 @@ const std::vector<double>& point_values(const MeshData& mesh, const std::string&
 }
 
 std::vector<Vec3> field_values(const MeshData& mesh, const std::string& array, std::optional<FieldPlace> at) {
-  return VectorArrays(mesh, at).values(array);
+  return as_vectors(PlacedArrays(mesh, at).values(array));
 }
 
 FieldPlace field_place(const MeshData& mesh, const std::string& array, std::optional<FieldPlace> at) {
-  return VectorArrays(mesh, at).place(array);
+  return PlacedArrays(mesh, at).place(array);
 }
 
 FieldSamples field_samples_of(const FieldScene& scene, const MeshData& mesh) {
   const std::vector<std::string> names = names_of(mesh, scene);
   const FieldPlace place = field_place(mesh, names.front(), scene.at);
-  VectorArrays arrays(mesh, place);
+  PlacedArrays arrays(mesh, place);
   std::vector<std::vector<Vec3>> values;
-  for (const std::string& name : names) values.push_back(arrays.values(name));
+  for (const std::string& name : names) values.push_back(as_vectors(arrays.values(name)));
   std::vector<double> times =
       sample_times(fmt::format("the field '{}'", scene.array), scene.times, scene.spacing, names.size(), "arrays");
   FieldSamples samples = field_samples(std::move(times), std::move(values), place, scene.period);
   samples.interpolation = scene.interpolation;
+  return samples;
+}
+
+std::string component_name(const std::string& array, std::size_t components, std::size_t k) {
+  constexpr const char* axes[] = {"x", "y", "z"};
+  constexpr const char* symmetric[] = {"xx", "xy", "xz", "yy", "yz", "zz"};
+  switch (components) {
+    case 1: return array;
+    case 3: return fmt::format("{}_{}", array, axes[k]);
+    case 6: return fmt::format("{}_{}", array, symmetric[k]);
+    case 9: return fmt::format("{}_{}{}", array, axes[k / 3], axes[k % 3]);
+    default: return fmt::format("{}_{}", array, k);
+  }
+}
+
+ArrayInMesh array_in_mesh(const MeshData& mesh, const std::string& array, std::optional<FieldPlace> at) {
+  const auto named = [&](const DataArray& a) { return a.name == array; };
+  const DataArray* found = nullptr;
+  const auto look = [&](const std::vector<DataArray>& arrays) {
+    const auto it = std::find_if(arrays.begin(), arrays.end(), named);
+    if (found == nullptr && it != arrays.end()) found = &*it;
+  };
+  if (at != FieldPlace::cells) look(mesh.point_data);
+  look(mesh.cell_data);
+  if (found == nullptr || found->components == 0)
+    throw InvalidMesh(
+        fmt::format("the mesh has no array '{}'; its point arrays (components) are: {}; its cell arrays: {}", array,
+                    list_of(mesh.point_data), list_of(mesh.cell_data)));
+  PlacedArrays arrays(mesh, at);
+  return {found->components, arrays.place(array, found->components), arrays.values(array, found->components)};
+}
+
+std::vector<Vec3> three_components(const ArrayInMesh& array, std::size_t part) {
+  const std::size_t first = 3 * part;
+  std::vector<Vec3> out(array.values.size() / array.components);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const auto at = [&](std::size_t k) { return k < array.components ? array.values[i * array.components + k] : 0.0; };
+    out[i] = {at(first), at(first + 1), at(first + 2)};
+  }
+  return out;
+}
+
+ArraySamples array_samples_of(const MeshData& mesh, const std::string& array, std::optional<FieldPlace> at) {
+  const ArrayInMesh found = array_in_mesh(mesh, array, at);
+  ArraySamples samples{array, found.components, {}};
+  for (std::size_t part = 0; 3 * part < found.components; ++part) {
+    samples.parts.push_back(field_samples({0.0}, {three_components(found, part)}, found.place));
+    samples.parts.back().vectors = false;
+  }
   return samples;
 }
 

@@ -105,6 +105,7 @@ ParticleSystem::ParticleSystem(Environment& environment, Followers& followers, M
       responses_(responses_of(options, environment.map())),
       set_(options.user_data.size()),
       aiming_(environment, followers, motion, options_),
+      sampled_(environment, followers, options_.user_data),
       contacts_(environment, followers, motion, options_, responses_) {
   check(options);
   if (environment.map().dimension() == 2 && options.gravity.z != 0.0)
@@ -130,6 +131,7 @@ void ParticleSystem::step(double /*begin*/) {
   mark_held();
   remove_gone(departed);
   motion_.count_step();
+  take_samples();
 }
 
 void ParticleSystem::move_vertices() {

@@ -16,6 +16,7 @@
 #include "simulation/moving_vertices.hpp"
 #include "simulation/particle_set.hpp"
 #include "simulation/particle_share.hpp"
+#include "simulation/sampled_fields.hpp"
 #include "simulation/seeding.hpp"
 #include "simulation/simulation_state.hpp"
 #include "simulation/sphere_contacts.hpp"
@@ -33,6 +34,9 @@ class ParticleSystem final : public SimulationComponent {
                  const SimulationOptions& options);
 
   [[nodiscard]] Aiming& aiming() { return aiming_; }
+  [[nodiscard]] SampledFields& sampled() { return sampled_; }
+  /// Gives all particles the values of the sampled arrays at their places now.
+  void take_samples() { sampled_.take(set_, motion_.time()); }
   /// The environment is a part of one that ranks share by cells. Precondition: there are no particles.
   void set_part(PartEnvironment& part);
   [[nodiscard]] std::optional<SampledPart> sampled_part() const;
@@ -106,6 +110,7 @@ class ParticleSystem final : public SimulationComponent {
   WallResponses responses_;
   ParticleSet set_;
   Aiming aiming_;
+  SampledFields sampled_;
   SphereStepper stepper_;
   SimultaneousStepper simultaneous_stepper_;
   SphereContacts contacts_;

@@ -1,6 +1,7 @@
 // Looks up in a mesh what a scene names: arrays, patches and regions.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -43,6 +44,23 @@ std::optional<VectorField> field_of(const FieldScene& scene, const std::string& 
   FieldSamples samples = scene.samples.read ? scene.samples : field_samples_of(scene, mesh);
   samples.name = name;
   return VectorField(complex, std::move(samples), scene.frame);
+}
+
+std::vector<SampledField> sampled_of(const MotionScene& scene, const MeshData& mesh, const CellComplex& complex) {
+  if (!scene.sample.empty() && !scene.field.files.empty())
+    throw InvalidArgument("the sampled arrays' files have not been read; call load_scene_files() first");
+  std::vector<ArraySamples> arrays = scene.sampled;
+  for (const std::string& name : scene.sample) arrays.push_back(array_samples_of(mesh, name, scene.field.at));
+  std::vector<SampledField> sampled;
+  for (ArraySamples& array : arrays) {
+    for (std::size_t part = 0; part < array.parts.size(); ++part) {
+      std::vector<std::string> names;
+      for (std::size_t k = 3 * part; k < std::min(3 * part + 3, array.components); ++k)
+        names.push_back(component_name(array.name, array.components, k));
+      sampled.push_back({VectorField(complex, std::move(array.parts[part])), std::move(names)});
+    }
+  }
+  return sampled;
 }
 
 std::vector<DeformationStep> steps_of(const std::vector<DeformationScene>& scene, const MeshData& mesh) {
@@ -89,6 +107,7 @@ ResolvedMotion motion_of(const Scene& scene, const MeshData& mesh, const CellCom
   ResolvedMotion motion;
   motion.field = field_of(scene.motion.field, "the velocity field", mesh, complex);
   motion.force = field_of(scene.motion.force, "the force", mesh, complex);
+  motion.sampled = sampled_of(scene.motion, mesh, complex);
   if (scene.deformation.empty()) return motion;
   std::vector<DeformationStep> steps = steps_of(scene.deformation, mesh);
   if (!points.empty()) steps = steps_of_part(std::move(steps), points);
@@ -128,6 +147,8 @@ void resolve_on(const MeshData& mesh, const Scene& scene, Threads threads, Resol
   std::span<const std::uint32_t> points;
   if (resolved.part) points = resolved.part->points;
   resolved.motion = motion_of(scene, mesh, complex, points);
+  for (const SampledField& f : resolved.motion.sampled)
+    resolved.options.user_data.insert(resolved.options.user_data.end(), f.names.begin(), f.names.end());
   resolved.events = events_of(scene, mesh, complex.map());
 }
 

@@ -15,6 +15,7 @@
 #include "dartcast/scene.hpp"
 #include "dartcast/simulation.hpp"
 #include "dartcast/vector_field.hpp"
+#include "simulation/sampled_fields.hpp"
 
 namespace dartcast {
 
@@ -22,6 +23,7 @@ namespace dartcast {
 struct ResolvedMotion {
   std::optional<VectorField> field;
   std::optional<VectorField> force;
+  std::vector<SampledField> sampled;
   std::optional<Deformation> deformation;
 };
 

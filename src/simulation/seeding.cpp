@@ -230,7 +230,7 @@ Vec3 on_facet(unsigned dimension, const Corners& v, unsigned facet, const std::a
   return v[f[0]] * w[0] + v[f[1]] * w[1] + v[f[2]] * w[2];
 }
 
-// Of the facet's k-th corner in its simplex.
+// The number in its simplex of the facet's k-th corner.
 unsigned corner_of(unsigned dimension, unsigned facet, unsigned k) {
   return dimension == 2 ? plane_facet_corners[facet][k] : facet_corners[facet][k];
 }

@@ -39,6 +39,7 @@ const SimulationStep& Simulation::step() {
   const double begin = time();
   parts_->motion.load_step();
   parts_->particles.aiming().load_step();
+  parts_->particles.sampled().hold(time(), time() + options().dt);
   parts_->events.before_step(*this);
   parts_->particles.inject(parts_->inlets);
   parts_->statistics.note_start();

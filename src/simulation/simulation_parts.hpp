@@ -50,7 +50,14 @@ struct Simulation::Parts {
     particles.set_part(*part);
   }
 
-  /// Adds the inlet of a group. Throws as Inlets::add().
+  /// A group with zeros for the sampled numbers behind its user's.
+  [[nodiscard]] ParticlesScene completed(ParticlesScene group) {
+    std::vector<double>& data = group.user_data;
+    if (!data.empty()) data.resize(data.size() + particles.sampled().size());
+    return group;
+  }
+
+  /// Adds the inlet of a completed group. Throws as Inlets::add().
   void add_inlet(const ParticlesScene& group, const InletParticles& inlet) {
     std::optional<Patch> patch;
     if (!inlet.cone) patch = environment.map().patch(inlet.patch);
@@ -61,6 +68,7 @@ struct Simulation::Parts {
   void set_motion(ResolvedMotion resolved) {
     if (resolved.field) particles.aiming().set_field(std::move(*resolved.field));
     if (resolved.force) particles.aiming().set_force(std::move(*resolved.force));
+    particles.sampled().set(std::move(resolved.sampled));
     if (resolved.deformation) motion.set_deformation(std::move(*resolved.deformation));
   }
 

@@ -47,11 +47,13 @@ void Simulation::build(ResolvedScene& scene) {
   for (const CatheterScene& catheter : scene.catheters) add(catheter);
   for (const SolidScene& solid : scene.solids) add(solid);
   for (const ParticlesScene& group : scene.particles) {
-    if (const auto* inlet = std::get_if<InletParticles>(&group.source)) parts_->add_inlet(group, *inlet);
+    if (const auto* inlet = std::get_if<InletParticles>(&group.source))
+      parts_->add_inlet(parts_->completed(group), *inlet);
   }
 }
 
-void Simulation::add(const ParticlesScene& group) {
+void Simulation::add(const ParticlesScene& given) {
+  const ParticlesScene group = parts_->completed(given);
   ParticleSystem& particles = parts_->particles;
   if (const auto* inlet = std::get_if<InletParticles>(&group.source)) {
     parts_->add_inlet(group, *inlet);
@@ -74,6 +76,7 @@ Simulation::Simulation(const Scene& scene, Threads threads, Ranks* ranks, Partit
   for (const ParticlesScene& group : resolved.particles) {
     if (!std::holds_alternative<InletParticles>(group.source)) add(group);
   }
+  parts_->particles.take_samples();
 }
 
 Simulation::Simulation(const Scene& scene, const SimulationCheckpoint& saved, Threads threads, AfterEdit after_edit,

@@ -124,7 +124,7 @@ void VectorField::check(std::size_t k, std::span<const Vec3> values) const {
   const auto bad = std::find_if_not(values.begin(), values.end(), is_finite);
   if (bad != values.end())
     throw InvalidArgument(fmt::format("{}: the value at {} {} is not finite", name, item, bad - values.begin()));
-  if (!plane_) return;
+  if (!plane_ || !samples_.vectors) return;
   const auto out = std::find_if(values.begin(), values.end(), [](const Vec3& v) { return v.z != 0.0; });
   if (out != values.end())
     throw InvalidArgument(fmt::format("{}: the value at {} {} is ({}, {}, {}): in the plane its z must be 0", name,

@@ -210,7 +210,7 @@ TEST_F(SceneFields, RefusalsSayWhatAndWhere) {
   expect_error("field = { array = 'U_*', times = [0, 2, 1] }", {"velocity field", "must increase"});
   expect_error("field = { array = 'U_*', spacing = 1, period = 1 }", {"velocity field", "period is 1 s"});
   expect_error("field = { array = 'V_*', spacing = 1 }", {"point or cell array 'V_*'", "U_8 (3)", "C_8 (3)"});
-  expect_error("field = { array = 'C_8', at = 'points' }", {"no point array 'C_8'", "U_8 (3)"});
+  expect_error("field = { array = 'V_8', at = 'points' }", {"no point array 'V_8'", "U_8 (3)"});
   expect_error("field = { array = 'U_8', at = 'cells' }", {"no cell array 'U_8'", "C_8 (3)"});
   expect_error("field = { array = 'U', files = 'V_*.vtu', spacing = 1 }", {"V_*.vtu", "no file"});
   expect_error("field = { array = 'U', files = '*_*.vtu', spacing = 1 }", {"*_*.vtu", "one star"});
@@ -334,6 +334,86 @@ TEST(FieldSeries, NumbersAreInOrder) {
                                  "U_100000000000000000000.vtu", "U_0.vtu"}),
             (std::vector<std::string>{"U_0.vtu", "U_007.vtu", "U_9.vtu", "U_10.vtu", "U_100000000000000000000.vtu"}));
   EXPECT_EQ(numbered("*", {"3", "a", "12"}), (std::vector<std::string>{"3", "12"}));
+}
+
+// Cells' values at points are a field without jumps: on both sides of a face between two cells it is the same.
+TEST_F(SceneFields, CellsBroughtToPointsAreContinuous) {
+  for (const char* keys : {"field = { array = 'C_8', at = 'points' }",
+                           "field = { array = 'C', at = 'points', files = ['U_8.vtu'], spacing = 1.0 }"}) {
+    const Scene scene = load(keys);
+    EXPECT_EQ(scene.motion.field.samples.read ? scene.motion.field.samples.place : FieldPlace::points,
+              FieldPlace::points);
+    Simulation simulation(scene);
+    constexpr double near = 0x1p-40;
+    simulation.add({{1.0 - near, 1.4, 1.3}, {1.0 + near, 1.4, 1.3}, {1.5, 1.5, 2.0 - near}, {1.5, 1.5, 2.0 + near}},
+                   {});
+    simulation.step();
+    expect_near(simulation.velocities()[0], simulation.velocities()[1], 1e-12);
+    expect_near(simulation.velocities()[2], simulation.velocities()[3], 1e-12);
+    EXPECT_GT(simulation.velocities()[3].x, 0.01);
+  }
+}
+
+// The mesh's values are linear in space, so particles take them exactly; in time those of the files are, too.
+TEST_F(SceneFields, ParticlesTakeSamples) {
+  const auto check = [](Simulation& simulation, bool moves) {
+    const std::vector<std::string> names = simulation.options().user_data;
+    ASSERT_EQ(names.size(), 6U);
+    EXPECT_EQ(names[0].substr(names[0].size() - 2), "_x");
+    for (std::size_t i = 0; i < simulation.particles().size(); ++i) {
+      const std::span<const double> numbers = simulation.user_data(i);
+      const ParticleState& s = simulation.particles()[i];
+      const double t = moves ? std::min(simulation.time(), 2.0) : 0.0;
+      expect_near({numbers[0], numbers[1], numbers[2]}, velocity(s.position, t), 1e-14);
+      expect_near({numbers[3], numbers[4], numbers[5]}, at_cell(simulation.environment().map().source(s.cell), t),
+                  1e-14);
+    }
+  };
+  for (const bool moves : {false, true}) {
+    Scene scene = load(moves ? "field = { array = 'U', files = 'U_*.vtu', spacing = 1.0 }\nsample = ['U', 'C']"
+                             : "field = 'U_8'\nsample = ['U_8', 'C_8']");
+    EXPECT_EQ(scene.motion.sample.empty(), moves);
+    ParticlesScene group;
+    group.source = RandomParticles{40};
+    scene.particles.push_back(group);
+    Simulation simulation(scene);
+    ASSERT_EQ(simulation.particles().size(), 40U);
+    check(simulation, moves);  // at the start, too
+    for (int i = 0; i < 10; ++i) simulation.step();
+    check(simulation, moves);
+    Simulation other(scene, simulation.checkpoint());
+    other.step();
+    simulation.step();
+    check(other, moves);
+    for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(other.user_data(i)[0], simulation.user_data(i)[0]);
+  }
+}
+
+// The numbers of a scene's user come first; those of a scalar and of a tensor have its name and its axes.
+TEST_F(SceneFields, SamplesStandBehindUserData) {
+  MeshData mesh = box();
+  mesh.cell_data.push_back({"p", 1, std::vector<double>(mesh.cell_count(), 7.0)});
+  DataArray stress{"stress", 6, {}};
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c)
+    for (int k = 0; k < 6; ++k) stress.values.push_back(k + 0.5);
+  mesh.cell_data.push_back(stress);
+  Scene scene;
+  scene.environment.mesh = mesh;
+  scene.user_data = {"age"};
+  scene.motion.sample = {"p", "stress"};
+  scene.motion.field.at = FieldPlace::points;
+  ParticlesScene group;
+  group.source = RandomParticles{5};
+  group.user_data = {3.0};
+  scene.particles.push_back(group);
+  const Simulation simulation(scene);
+  EXPECT_EQ(simulation.options().user_data, (std::vector<std::string>{"age", "p", "stress_xx", "stress_xy", "stress_xz",
+                                                                      "stress_yy", "stress_yz", "stress_zz"}));
+  const std::span<const double> numbers = simulation.user_data(4);
+  EXPECT_EQ(std::vector<double>(numbers.begin(), numbers.end()),
+            (std::vector<double>{3.0, 7.0, 0.5, 1.5, 2.5, 3.5, 4.5, 5.5}));
+  scene.motion.sample = {"none"};
+  expect_parts(test::error_text([&] { Simulation{scene}; }), {"no array 'none'", "p (1)", "stress (6)"});
 }
 
 }  // namespace dartcast::scene_fields_test

@@ -377,13 +377,15 @@ TEST(Inlets, WhatIsRefused) {
   expect(with([](auto& i) { i.cone->speed = -1.0; }), {"speed"});
   expect(with([](auto& i) { i.cone->at = {5, 5, 5}; }), {"no free cell"});
   expect(with([](auto& i) { i.patch = "xmin"; }), {"either a patch or a cone"});
-  expect(with([](auto& i) { i.profile = InletProfile::flux; }), {"flux", "field"});
   expect(with([](auto& i) { i.burst_times = {-1.0}; }), {"burst", "-1"});
   expect(with([](auto& i) { i.rate = 1e300; }), {"rate"});
   InletParticles flux;
   flux.patch = "xmin";
   flux.profile = InletProfile::flux;
   expect(flux, {"field", "set_field"});
+  const std::vector<Vec3> flow(environment.complex().point_count(), Vec3{1.0, 0.0, 0.0});
+  simulation.set_field({environment.complex(), flow});
+  expect(with([](auto& i) { i.profile = InletProfile::flux; }), {"flux", "patch"});
   EXPECT_EQ(simulation.step().injected, 0U);
 }
 

@@ -45,7 +45,7 @@ class FoamCase {
   [[nodiscard]] PolyMesh read(std::uint64_t max_memory) const;
   /// The points at the path's time: of its folder, else of the last one before that has points.
   [[nodiscard]] std::vector<Vec3> points(std::uint64_t max_memory) const;
-  /// That time: "constant", or the name of its folder.
+  /// The time of these points: "constant", or the name of its folder.
   [[nodiscard]] std::string time_of_points() const;
 
   /// A field's values in the order of cells or points, `components` each.

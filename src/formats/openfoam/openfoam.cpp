@@ -64,7 +64,7 @@ class CellsToPoints {
   }
 
  private:
-  // Of each patch face; null: it has none.
+  // The values on each patch face; null: it has none.
   [[nodiscard]] std::vector<const double*> values_of_faces(const FoamCase::Field& field) const {
     std::unordered_map<std::uint32_t, const double*> known;
     for (std::size_t i = 0; i < field.faces.faces.size(); ++i)
