@@ -2,7 +2,7 @@
 from ._core import (
     ALONG_SHARE as ALONG_SHARE, Acceleration as Acceleration,
     AdaptiveSubdivisionOptions as AdaptiveSubdivisionOptions, AdaptiveSubdivisionReport as AdaptiveSubdivisionReport,
-    AddBodyResult as AddBodyResult, AfterContact as AfterContact, Audit as Audit,
+    AddBodyResult as AddBodyResult, AfterContact as AfterContact, ArraySamples as ArraySamples, Audit as Audit,
     BodiesCheckpoint as BodiesCheckpoint, BodiesOptions as BodiesOptions, BodiesStep as BodiesStep,
     BodyCollisionCounts as BodyCollisionCounts, BodyCollisionOptions as BodyCollisionOptions,
     BodyEnergy as BodyEnergy, BodySummary as BodySummary, CELL_DIAGONAL as CELL_DIAGONAL, Camera as Camera,
