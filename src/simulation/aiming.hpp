@@ -28,7 +28,8 @@ class Aiming {
   void check_field(std::string_view what) const;
   /// Brings the field alone to a time.
   void set_field_time(double time);
-  /// The field at a corner of a simplex, relative to the mesh. Precondition: it stands at the time.
+  /// The field at a corner of a simplex, relative to the mesh by its last move, which an edit ends. Precondition: the field
+  /// stands at the time.
   [[nodiscard]] Vec3 flow_at_corner(SimplexId at, unsigned corner) const;
   /// Gives particles from this one on the field's velocity at their places. Throws as check_field().
   void start_with_field(ParticleSet& set, std::size_t first, double time);

@@ -12,6 +12,7 @@
 
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
+#include "dartcast/remeshing.hpp"
 #include "dartcast/scene.hpp"
 #include "dartcast/simulation.hpp"
 #include "mesh/point_weights.hpp"
@@ -357,6 +358,38 @@ TEST(Inlets, ParticlesStartWithTheField) {
   ASSERT_EQ(simulation.particles().size(), 101U);
   for (std::size_t i = 1; i < 101; ++i)
     test::expect_near(simulation.velocities()[i], flow(simulation.particles()[i].position), 1e-14);
+}
+
+// Through a patch that moves as fast as the fluid nothing comes in. A slower patch lets particles in, also once a
+// cell behind it is subdivided.
+TEST(Inlets, FluxIsRelativeToAMovingPatch) {
+  const MeshData mesh = generate_box(box_of(2, CellType::hexahedron));
+  DeformationStep frames;
+  frames.kind = DeformationKind::frames;
+  frames.times = {0.0, 64.0};
+  frames.frames = {mesh.points, mesh.points};
+  for (Vec3& x : frames.frames[1]) x.x += 64.0;
+  for (const double speed : {1.0, 3.0}) {
+    Environment environment(mesh);
+    SimulationOptions options;
+    options.dt = 0.25;
+    options.response = Escape{};
+    Simulation simulation(environment, options);
+    simulation.set_field({environment.complex(), std::vector<Vec3>(mesh.points.size(), Vec3{speed, 0.0, 0.0})});
+    simulation.set_deformation(Deformation({frames}, mesh.points));
+    InletParticles inlet;
+    inlet.patch = "xmin";
+    inlet.rate = 40.0;
+    inlet.profile = InletProfile::flux;
+    simulation.add(group_of(inlet));
+    EXPECT_EQ(simulation.step().injected, 10U);  // it stands before the first move
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(simulation.step().injected, speed > 1.0 ? 10U : 0U);
+    const Cell behind = environment.locate({simulation.time() + 0.1, 0.25, 0.25}).simplex.cell;
+    simulation.edit([&](ComplexEdit& e) { subdivide(e, behind); });
+    EXPECT_EQ(simulation.step().injected, 10U);  // nor does it move between the edit and the next move
+    EXPECT_EQ(simulation.step().injected, speed > 1.0 ? 10U : 0U);
+    EXPECT_EQ(simulation.audit().failed, 0U);
+  }
 }
 
 TEST(Inlets, WhatIsRefused) {
