@@ -1,4 +1,4 @@
-// Elementary functions by series and exact reductions. elementary4.inl repeats the sine and cosine for four numbers.
+// Elementary functions by series and exact reductions. elementary4.inl repeats some for four numbers.
 #include "base/elementary.hpp"
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/exponential_series.hpp"
 #include "base/sine_series.hpp"
 #include "base/wide_integer.hpp"
 
@@ -16,10 +17,15 @@ namespace dartcast {
 namespace {
 
 using detail::cosine_terms;
+using detail::exponential_terms;
 using detail::half_pi_parts;
+using detail::ln2_parts;
+using detail::logarithm_terms;
+using detail::lowest_exponent;
 using detail::many_radians;
 using detail::many_turns;
 using detail::per_half_pi;
+using detail::per_ln2;
 using detail::radians_per_turn;
 using detail::sine_terms;
 using detail::splitter;
@@ -157,16 +163,6 @@ SineCosine sine_cosine_of_turns(double t) {
 
 namespace {
 
-// ln 2: 32 bits, and the rest.
-constexpr std::array ln2_parts = {0x1.62e42feep-1, 0x1.a39ef35793c76p-33};
-constexpr double per_ln2 = 0x1.71547652b82fep+0;
-
-// The series of (exp(x) - 1 - x) / x^2. In [-ln 2 / 2, ln 2 / 2] the rest is below 2^-61.
-constexpr std::array exponential_terms = {1.0 / 2.0,          1.0 / 6.0,        1.0 / 24.0,        1.0 / 120.0,
-                                          1.0 / 720.0,        1.0 / 5040.0,     1.0 / 40320.0,     1.0 / 362880.0,
-                                          1.0 / 3628800.0,    1.0 / 39916800.0, 1.0 / 479001600.0, 1.0 / 6227020800.0,
-                                          1.0 / 87178291200.0};
-
 // The value exp(x) is 2^power (1 + high + low).
 struct ExponentialParts {
   double high, low;
@@ -195,11 +191,30 @@ double exponential(double x) {
 double exponential_less_one(double x) {
   if (x == 0.0 || std::isnan(x)) return x;
   if (x > 50.0) return exponential(x);
-  if (x < -50.0) return -1.0;
+  if (x < lowest_exponent) return -1.0;
   const ExponentialParts e = exponential_parts(x);
   const double less_one = e.high + e.low;
   return e.power == 0 ? less_one : std::ldexp(less_one, e.power) + (std::ldexp(1.0, e.power) - 1.0);
 }
+
+// As in fdlibm (K. C. Ng, 1993): x = 2^k (1 + f), s = f / (2 + f), and ln(1 + f) = f - (h - s (h + r)) with h = f^2 / 2.
+// The difference f is exact.
+double logarithm(double x) {
+  if (!(x > 0.0)) return x == 0.0 ? -infinity : std::numeric_limits<double>::quiet_NaN();
+  if (x == infinity) return x;
+  const bool tiny = x < std::numeric_limits<double>::min();
+  const auto bits = std::bit_cast<std::uint64_t>(tiny ? x * 0x1p+54 : x);
+  const std::uint64_t power = (bits - detail::root_of_half_bits + (std::uint64_t{1024} << 52U)) >> 52U;
+  const double f = std::bit_cast<double>(bits - ((power - 1024U) << 52U)) - 1.0;
+  const double k = static_cast<double>(power) - (tiny ? 1078.0 : 1024.0);
+  const double s = f / (2.0 + f);
+  const double z = s * s;
+  const double half = 0.5 * f * f;
+  const double off = half - (s * (half + z * polynomial(logarithm_terms, z)) + k * ln2_parts[1]);
+  return k * ln2_parts[0] - (off - f);
+}
+
+double power(double x, double y) { return y == 0.0 ? 1.0 : exponential(y * logarithm(x)); }
 
 namespace {
 

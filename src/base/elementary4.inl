@@ -1,4 +1,4 @@
-// Sines and cosines of four numbers, with the bits of elementary.cpp: the same operations in the same order.
+// Elementary functions of four numbers, with the bits of elementary.cpp: the same operations in the same order.
 #pragma once
 
 #include <array>
@@ -6,6 +6,7 @@
 
 #include "base/double4.inl"
 #include "base/elementary.hpp"
+#include "base/exponential_series.hpp"
 #include "base/sine_series.hpp"
 
 DARTCAST_BEGIN_KERNEL
@@ -95,6 +96,68 @@ inline SineCosine4 sine_cosine_of_turns(const Double4& t) {
   if (lanes_set(a < splat(many_turns)) == 15) return sine_cosine_of(t, reduced_turns(a));
   return one_by_one(t, dartcast::sine_cosine_of_turns);
 }
+
+using Bits4 = unsigned long long __attribute__((vector_size(32)));
+
+struct ExponentialParts4 {
+  Double4 high, low;
+  Double4 power;
+};
+
+inline ExponentialParts4 exponential_parts(const Double4& x) {
+  const Mask4 sign = reinterpret_cast<Mask4>(x) & splat_bits(static_cast<long long>(0x8000000000000000U));
+  const Double4 size = (magnitude(x) * per_ln2 + to_integer) - to_integer;
+  const Double4 k = reinterpret_cast<Double4>(reinterpret_cast<Mask4>(size) | sign);
+  const Double4 first = x - k * ln2_parts[0];
+  const Double4 second = k * ln2_parts[1];
+  const Double4 r = first - second;
+  const Double4 off = (first - r) - second;
+  return {r, (off + off * r) + r * r * polynomial(exponential_terms, r), k};
+}
+
+// x 2^k. Precondition: x is 0 or both are normal.
+inline Double4 scaled(const Double4& x, const Double4& k) {
+  const Mask4 bits = reinterpret_cast<Mask4>(x) + (reinterpret_cast<Mask4>(k + to_integer) << 52);
+  return x == 0.0 ? x : reinterpret_cast<Double4>(bits);
+}
+
+template <class Function>
+inline Double4 each(const Double4& x, Function&& function) {
+  return Double4{function(x[0]), function(x[1]), function(x[2]), function(x[3])};
+}
+
+// As dartcast::exponential().
+inline Double4 exponential(const Double4& x) {
+  if (lanes_set(magnitude(x) < splat(700.0)) != 15) return each(x, dartcast::exponential);
+  const ExponentialParts4 e = exponential_parts(x);
+  return scaled(splat(1.0) + (e.high + e.low), e.power);
+}
+
+// As dartcast::exponential_less_one(), for x <= 0.
+inline Double4 exponential_less_one(const Double4& x) {
+  const ExponentialParts4 e = exponential_parts(larger(x, splat(lowest_exponent)));
+  const Double4 less_one = e.high + e.low;
+  const Double4 sum = scaled(less_one, e.power) + (scaled(splat(1.0), e.power) - splat(1.0));
+  return x == 0.0 ? x : e.power == 0.0 ? less_one : sum;
+}
+
+// As dartcast::logarithm().
+inline Double4 logarithm(const Double4& x) {
+  if (lanes_set((x >= splat(0x1p-1000)) & (x <= splat(0x1p+1000))) != 15) return each(x, dartcast::logarithm);
+  const auto bits = reinterpret_cast<Bits4>(x);
+  const Bits4 power = (bits - root_of_half_bits + (1024ULL << 52U)) >> 52;
+  const Double4 f = reinterpret_cast<Double4>(bits - ((power - 1024ULL) << 52)) - splat(1.0);
+  const Bits4 in_last_bits = power | 0x4330000000000000ULL;
+  const Double4 k = reinterpret_cast<Double4>(in_last_bits) - splat(0x1p+52 + 1024.0);
+  const Double4 s = f / (splat(2.0) + f);
+  const Double4 z = s * s;
+  const Double4 half = splat(0.5) * f * f;
+  const Double4 off = half - (s * (half + z * polynomial(logarithm_terms, z)) + k * ln2_parts[1]);
+  return k * ln2_parts[0] - (off - f);
+}
+
+// As dartcast::power(), for y > 0.
+inline Double4 power(const Double4& x, double y) { return exponential(splat(y) * logarithm(x)); }
 
 }  // namespace
 }  // namespace dartcast::detail::DARTCAST_SIMD

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/elementary4.inl"
 #include "base/random.hpp"
 
 namespace dartcast::elementary_test {
@@ -22,6 +23,8 @@ Wide wide_sine(Wide x) { return sinf128(x); }
 Wide wide_cosine(Wide x) { return cosf128(x); }
 Wide wide_exp(Wide x) { return expf128(x); }
 Wide wide_expm1(Wide x) { return expm1f128(x); }
+Wide wide_log(Wide x) { return logf128(x); }
+Wide wide_pow(Wide x, Wide y) { return powf128(x, y); }
 Wide wide_atan2(Wide y, Wide x) { return atan2f128(y, x); }
 Wide wide_cbrt(Wide x) { return cbrtf128(x); }
 Wide wide_sqrt(Wide x) { return sqrtf128(x); }
@@ -32,6 +35,8 @@ Wide wide_sine(Wide x) { return std::sin(x); }
 Wide wide_cosine(Wide x) { return std::cos(x); }
 Wide wide_exp(Wide x) { return std::exp(x); }
 Wide wide_expm1(Wide x) { return std::expm1(x); }
+Wide wide_log(Wide x) { return std::log(x); }
+Wide wide_pow(Wide x, Wide y) { return std::pow(x, y); }
 Wide wide_atan2(Wide y, Wide x) { return std::atan2(y, x); }
 Wide wide_cbrt(Wide x) { return std::cbrt(x); }
 Wide wide_sqrt(Wide x) { return std::sqrt(x); }
@@ -163,6 +168,65 @@ TEST(Elementary, ExponentialsAreWithinTheirBounds) {
   EXPECT_EQ(exponential_less_one(-infinity), -1.0);
 }
 
+TEST(Elementary, LogarithmsAreWithinAUlp) {
+  Worst log;
+  const auto check = [&](double x) { log.add(x, logarithm(x), wide_log(x)); };
+  for (const double x : numbers(-1074, 1024, 40000, 10)) check(std::abs(x));
+  for (const double x : numbers(-52, 0, 40000, 11)) check(1.0 + 0.9 * x);  // small results
+  for (const double half : {std::sqrt(0.5), std::sqrt(2.0), 1.0}) {        // the ends of the reduction
+    double x = half * (1.0 - 0x1p-44);
+    for (int i = 0; i < 2000; ++i) check(x = std::nextafter(x, infinity));
+  }
+  log.expect_below(1.0, "log");
+  EXPECT_EQ(bits(logarithm(1.0)), bits(0.0));
+}
+
+TEST(Elementary, PowersAreWithinTheirBound) {
+  const std::vector<double> bases = numbers(-1000, 1000, 40000, 12), exponents = numbers(-20, 4, 40000, 13);
+  double worst = 0.0;
+  for (std::size_t i = 0; i < bases.size(); ++i) {
+    const double x = i % 2 == 0 ? std::abs(bases[i]) : std::abs(std::fmod(bases[i], 1e4)) + 1e-9;
+    for (const double y : {exponents[i], 0.687, 2.0 / 3.0}) {
+      const Wide truth = wide_pow(x, y);
+      const auto size = std::abs(static_cast<double>(Wide(y) * wide_log(x)));
+      if (size > 700.0) continue;
+      worst = std::max(worst, error_in_ulp(power(x, y), truth) / (2.0 + 3.0 * size));
+    }
+  }
+  EXPECT_LT(worst, 1.0);
+  EXPECT_GT(worst, 0.1);  // the bound is not an idle one
+}
+
+// Each lane has the bits of the function of one number, whatever is in the other lanes.
+TEST(Elementary, FourAtATimeHaveTheBitsOfOne) {
+  std::vector<double> all = {0.0,  -0.0,  infinity, -infinity, nan,   5e-324, 1.0,
+                             -1.0, 699.9, -700.1,   -49.9,     -50.1, 1e300};
+  for (const double x : numbers(-60, 9, 6000, 14)) all.push_back(x);
+  for (const double x : numbers(-1074, 1023, 2000, 15)) all.push_back(x);
+  const auto expect = [&](const char* what, const std::vector<double>& given, auto&& four, auto&& one) {
+    for (std::size_t i = 0; i + 4 <= given.size(); i += 4) {
+      const detail::portable::Double4 y = four(detail::portable::load_doubles(&given[i]));
+      for (std::size_t k = 0; k < 4; ++k) {
+        const double truth = one(given[i + k]);
+        if (std::isnan(truth) && std::isnan(y[k])) continue;
+        ASSERT_EQ(bits(y[k]), bits(truth)) << what << " of " << given[i + k];
+      }
+    }
+  };
+  using Four = detail::portable::Double4;
+  expect(
+      "exp", all, [](const Four& x) { return detail::portable::exponential(x); }, exponential);
+  expect(
+      "log", all, [](const Four& x) { return detail::portable::logarithm(x); }, logarithm);
+  std::vector<double> sizes, negative;
+  for (const double x : all) sizes.push_back(std::abs(x)), negative.push_back(std::isnan(x) ? -0.0 : -std::abs(x));
+  expect(
+      "pow", sizes, [](const Four& x) { return detail::portable::power(x, 0.687); },
+      [](double x) { return power(x, 0.687); });
+  expect(
+      "expm1", negative, [](const Four& x) { return detail::portable::exponential_less_one(x); }, exponential_less_one);
+}
+
 TEST(Elementary, AnglesRootsAndLengthsAreWithinTheirBounds) {
   Worst angle, cube, length, space;
   const std::vector<double> a = numbers(-30, 30, 40000, 6), b = numbers(-30, 30, 40000, 7);
@@ -208,6 +272,9 @@ TEST(Elementary, SpecialValuesAreThoseOfTheStandardLibrary) {
     }
     EXPECT_TRUE(same(exponential(x), std::exp(x)) || usual) << x;
     EXPECT_TRUE(same(exponential_less_one(x), std::expm1(x)) || usual) << x;
+    EXPECT_TRUE(same(logarithm(x), std::log(x)) || x == 5e-324) << x;
+    if (!std::signbit(x)) EXPECT_TRUE(same(power(x, 0.5), std::pow(x, 0.5)) || x == 5e-324) << x;
+    if (!std::signbit(x)) EXPECT_TRUE(same(power(x, 0.0), 1.0)) << x;
     for (const double y : special) {
       EXPECT_TRUE(same(polar_angle(y, x), std::atan2(y, x))) << y << " " << x << " " << polar_angle(y, x);
       EXPECT_TRUE(same(hypotenuse(y, x), std::hypot(y, x)) || (std::abs(x) == 1.0 && std::abs(y) == 1.0))
@@ -230,6 +297,16 @@ TEST(Elementary, BitsAreTheSameEverywhere) {
     add(hypotenuse(x, 3.0, 0.1));
   }
   EXPECT_EQ(hash, 0xc527c97bcb7d6517ULL) << std::hex << hash;
+}
+
+TEST(Elementary, BitsOfLogarithmsAndPowersAreTheSameEverywhere) {
+  std::uint64_t hash = 0;
+  const auto add = [&](double x) { hash = Random(hash ^ bits(x)).next(); };
+  for (const double x : numbers(-40, 40, 4000, 16)) {
+    add(logarithm(std::abs(x)));
+    add(power(std::abs(x), 0.687));
+  }
+  EXPECT_EQ(hash, 0xc4fa38def52708e5ULL) << std::hex << hash;
 }
 
 }  // namespace dartcast::elementary_test
