@@ -44,7 +44,7 @@ PUBLIC = {
     "solids": "solids",
     "bodies": "bodies",
     "catheter": "catheter",
-    "simulation": "simulation plan deformation vector_field summaries events scene statistics",
+    "simulation": "simulation plan deformation vector_field forces summaries events scene statistics",
     "formats": "mesh_files",
     "scene": "scene_file",
     "report": "report",

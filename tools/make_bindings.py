@@ -22,11 +22,11 @@ WORDS = [(r"\bThrows\b", "Raises"), (r"\bthrows\b", "raises"), (r"(\w)::(?=\w)",
 # Structs that are no records in Python: rows of arrays, numbers, tuples, and classes that python/src binds.
 BY_HAND = set("""
     AddResult BodiesCheckpoint CatheterCheckpoint Cell CellFace CellHandle ContactList Dart DataArray FaceHits
-    HeldParticle Id ImplicitSimplex LeftParticle MeshData MeshFile MeshPart OrphanedParticle Patch PathPoint
+    HeldParticle Id ImplicitSimplex LawParticles LawResult LawSamples LeftParticle MeshData MeshFile MeshPart OrphanedParticle Patch PathPoint
     PlaneCrossing PlanePassage RayCells RayHit ReplayResult SimplexId SolidAudit SolidCheckpoint SolidContact
     SolidMesh SolidPlacement SolidStep SphereOverlap SphereReport Stars Statistics SteinerPoints StepReplay
     StepReport StoppedParticle Subdivided Subdivision SurfaceReport SurfaceTrace Threads TouchedFaces Trace
-    Transaction UpdateReport Vec3
+    Transaction UpdateReport Vec3 VelocityGradient
     """.split())
 # Members that are arrays or objects of Python, which python/src binds.
 MEMBERS_BY_HAND = {"BodiesStep::edges", "ReadOptions::on_stage", "RunOptions::on_stage", "RunOptions::ranks",

@@ -16,6 +16,7 @@
 #include "dartcast/environment.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/events.hpp"
+#include "dartcast/forces.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/ids.hpp"
 #include "dartcast/map_edits.hpp"

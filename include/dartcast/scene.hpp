@@ -117,8 +117,11 @@ struct RandomParticles {
 struct ParticleSeeds {
   std::string name = "positions";  ///< of messages: the file's
   std::vector<Vec3> points;
-  std::vector<Vec3> velocities;  ///< one per point; empty: ParticlesScene::velocity
-  std::vector<double> radii;     ///< one per point; empty: ParticlesScene::radius
+  std::vector<Vec3> velocities;     ///< one per point; empty: ParticlesScene::velocity
+  std::vector<double> radii;        ///< one per point; empty: ParticlesScene::radius
+  std::vector<double> diameters{};  ///< one per point; empty: as ParticlesScene::material; so are the next two
+  std::vector<double> densities{};
+  std::vector<double> charges_per_mass{};
 };
 /// Particles at given places.
 struct PlacedParticles {
@@ -167,6 +170,8 @@ struct ParticlesScene {
   double radius = 0.0;
   std::vector<double> user_data;  ///< of each particle, a number for each name in Scene::user_data; empty: zeros
   bool with_field = false;        ///< they start with the field's velocity at their places, instead of `velocity`
+  Material material{};
+  bool interception = false;  ///< each radius is half the diameter
 };
 
 /// Where a body has its particles: in a solid filled by spheres, on its surface, or in its volume.
@@ -263,6 +268,7 @@ struct MotionScene {
   /// load_scene_files() makes these of `sample`, if the field has files; then `sample` is empty.
   std::vector<ArraySamples> sampled = {};
   double drag = 0.0;
+  ForceOptions forces{};
   unsigned substeps = 1;
   Integrator integrator = Integrator::euler;
   WallMotion wall_motion = WallMotion::carried;

@@ -20,6 +20,7 @@
 #include "dartcast/deformation.hpp"
 #include "dartcast/dynamics.hpp"
 #include "dartcast/environment.hpp"
+#include "dartcast/forces.hpp"
 #include "dartcast/ranks.hpp"
 #include "dartcast/remeshing.hpp"
 #include "dartcast/response.hpp"
@@ -88,6 +89,7 @@ struct SimulationOptions {
   double dt = 1e-3;  ///< of a step
   Vec3 gravity = {0.0, 0.0, 0.0};
   double drag = 0.0;           ///< >= 0: the velocity relaxes to the field's (to 0 without one) as exp(-drag t)
+  ForceOptions forces = {};    ///< with terms: laws for particles of a size and mass; then drag is 0
   WallResponse response = {};  ///< what happens at walls: Reflect{0.5}, Slide{}, ...
   std::map<std::string, WallResponse> patch_responses = {};  ///< at the walls of these patches, by name
   unsigned substeps = 1;  ///< > 0: a step's way is a polyline of so many segments; vertices move with the first one
@@ -187,7 +189,8 @@ struct SimulationEdit {
 ///  3. Vertices move.
 ///  4. Velocities change. Without a field, or with drag, dv/dt = g - drag (v - u) is solved exactly. g and u are those
 ///     at the start of the step or segment. Here g is gravity and the force's acceleration at the particle, and u is
-///     the field's velocity there, or 0. With a field and no drag v = u, and g has no effect.
+///     the field's velocity there, or 0. With a field and no drag v = u, and g has no effect. Forces and laws
+///     (dartcast/forces.hpp) act instead of drag, in two stages, of second order in dt.
 ///  5. Particles advance by v dt, wall responses included. Those absorbed or escaped leave.
 ///  6. Bodies step, then catheters. Statistics take what happened.
 ///  7. If it is due, invalid cells are remeshed and crowded cells are subdivided.
@@ -224,23 +227,31 @@ class Simulation {
   void set_force(VectorField force);
   /// Throws InvalidArgument if it is made for another number of points, and as Deformation::check_plane().
   void set_deformation(Deformation deformation);
+  /// Calls this law in each stage of a step, twice, for all particles at once. It acts with the forces of the options, and
+  /// needs no drag. Throws InvalidArgument as a simulation with forces would. If the law throws, or gives values that are not
+  /// finite or a rate below 0, step() throws. The step is then not complete: go on from a checkpoint.
+  void set_law(ParticleLaw law);
   /// Injects `rate` particles a second at random places of a patch, from the next step on. Throws as add(). Throws
   /// InvalidArgument if the patch has no face at a free cell, or the rate is negative or above 2^31 a step.
   void add_inlet(Patch patch, double rate, const Vec3& velocity, double radius = 0.0,
-                 std::span<const double> user_data = {});
+                 std::span<const double> user_data = {}, const Material& material = {});
 
   /// Adds particles at these positions, as Environment::add(). `radius`: as is_radius(). A sphere that does not fit is
   /// moved out of walls by its first step, and out of other spheres little by little. `user_data`: of each of these
-  /// particles, a number for each name in the options; empty: zeros. Throws InvalidArgument, nothing added, for a bad one.
+  /// particles, a number for each name in the options; empty: zeros. `material`: forces need some of it. Throws
+  /// InvalidArgument, nothing added, for a bad value.
   std::vector<AddResult> add(std::span<const Vec3> positions, const Vec3& velocity, double radius = 0.0,
-                             std::span<const double> user_data = {});
+                             std::span<const double> user_data = {}, const Material& material = {});
   std::vector<AddResult> add(std::initializer_list<Vec3> positions, const Vec3& velocity, double radius = 0.0);
-  /// The same, with a velocity and a radius for each particle. Throws if the numbers do not match, too.
+  /// The same, with a velocity and a radius for each particle, and one material for all or one each. Throws if the numbers
+  /// do not match, too.
   std::vector<AddResult> add(std::span<const Vec3> positions, std::span<const Vec3> velocities,
-                             std::span<const double> radii, std::span<const double> user_data = {});
+                             std::span<const double> radii, std::span<const double> user_data = {},
+                             std::span<const Material> materials = {});
   /// Adds particles at random places of the free cells, uniformly by volume. Throws InvalidArgument if no cell is
   /// free or the count is beyond 2^31, or as add().
-  void add_random(std::size_t count, const Vec3& velocity, double radius = 0.0, std::span<const double> user_data = {});
+  void add_random(std::size_t count, const Vec3& velocity, double radius = 0.0, std::span<const double> user_data = {},
+                  const Material& material = {});
 
   /// Adds a body of these particles, as Bodies::add(). Throws as that, and InvalidArgument if collisions have substeps.
   AddBodyResult add_body(std::span<const Vec3> points, const BodyOptions& options);
@@ -313,6 +324,9 @@ class Simulation {
   [[nodiscard]] std::span<const ParticleStatus> statuses() const;
   [[nodiscard]] std::span<const std::uint32_t> contact_counts() const;  ///< they stop at 2^32 - 1
   [[nodiscard]] std::span<const double> radii() const;
+  [[nodiscard]] std::span<const double> diameters() const;  ///< Material, as the two below
+  [[nodiscard]] std::span<const double> densities() const;
+  [[nodiscard]] std::span<const double> charges_per_mass() const;
   /// 1 for those that were held in the last step: they moved along with their cell instead of on their own.
   [[nodiscard]] std::span<const std::uint8_t> held() const;
   /// A number for each name in SimulationOptions::user_data. It stays with the particle. Precondition: there is one.

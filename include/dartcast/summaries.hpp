@@ -1,4 +1,4 @@
-// What a simulation says of its bodies, catheters and solids.
+// Summaries of the bodies, catheters and solids of a simulation.
 #pragma once
 
 #include <cstddef>

@@ -80,8 +80,9 @@ class VectorField {
   [[nodiscard]] FieldFrame frame() const { return frame_; }
   [[nodiscard]] FieldPlace place() const { return samples_.place; }
   [[nodiscard]] bool steady() const { return samples_.times.size() == 1; }
-  /// The vectors at the first of the times set: of all vertices, Steiner points last, or one for each source of a cell.
-  [[nodiscard]] std::span<const Vec3> values() const { return values_.front(); }
+  /// The vectors at the `moment`-th of the times set: of all vertices, Steiner points last, or one for each source of a
+  /// cell.
+  [[nodiscard]] std::span<const Vec3> values(std::size_t moment = 0) const { return values_[steady() ? 0 : moment]; }
   /// Positions of all vertices at rest; empty in the frame of space.
   [[nodiscard]] std::span<const Vec3> rest() const { return rest_; }
 

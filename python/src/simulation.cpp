@@ -8,6 +8,7 @@
 #include "dartcast/deformation.hpp"
 #include "dartcast/events.hpp"
 #include "dartcast/statistics.hpp"
+#include "forces.hpp"
 #include "simulation_handle.hpp"
 #include "support/edits.hpp"
 #include "support/motions.hpp"
@@ -65,36 +66,51 @@ std::vector<double> optional_numbers(const py::object& given, const char* name) 
   return py::detail::cast_op<std::vector<double>&>(caster);
 }
 
+// One material for all particles, or one each, as rows of numbers.
+std::span<const Material> materials(const py::object& given, Material& one) {
+  static_assert(sizeof(Material) == sizeof(Vec3));
+  if (given.is_none()) return {};
+  if (py::isinstance<Material>(given)) {
+    one = given.cast<Material>();
+    return {&one, 1};
+  }
+  const auto rows = vectors(given, "material");
+  return {reinterpret_cast<const Material*>(rows.data()), rows.size()};
+}
+
 // One velocity and radius for all particles, or one each.
 Added add(Handle& self, const Typed<"Points">& positions, const Typed<"Vector | Points">& velocity,
-          const Typed<"float | Floats">& radius, const Typed<"Numbers[float64] | None">& user_data) {
+          const Typed<"float | Floats">& radius, const Typed<"Numbers[float64] | None">& user_data,
+          const Typed<"Material | Points | None">& material) {
   const auto x = vectors(positions, "positions");
   const std::vector<double> data = optional_numbers(user_data, "user_data");
+  Material one;
+  const std::span<const Material> of = materials(material, one);
   const bool single_radius =
       !py::isinstance<py::array>(radius) || py::reinterpret_borrow<py::array>(radius).ndim() == 0;
-  if (!is_array(velocity, 2) && single_radius) {
+  if (!is_array(velocity, 2) && single_radius && of.size() < 2) {
     const Vec3 v = vector(velocity, "velocity");
     const auto r = radius.cast<double>();
-    return added_of(change(self, [&](Simulation& s) { return s.add(x, v, r, data); }));
+    return added_of(change(self, [&](Simulation& s) { return s.add(x, v, r, data, of.empty() ? Material{} : of[0]); }));
   }
   const std::vector<Vec3> same(is_array(velocity, 2) ? 0 : x.size(),
                                is_array(velocity, 2) ? Vec3{} : vector(velocity, "velocity"));
   const std::vector<double> same_radius(single_radius ? x.size() : 0, single_radius ? radius.cast<double>() : 0.0);
   const std::span<const Vec3> v = is_array(velocity, 2) ? vectors(velocity, "velocity") : std::span<const Vec3>(same);
   const std::span<const double> r = single_radius ? std::span<const double>(same_radius) : numbers(radius, "radius");
-  return added_of(change(self, [&](Simulation& s) { return s.add(x, v, r, data); }));
+  return added_of(change(self, [&](Simulation& s) { return s.add(x, v, r, data, of); }));
 }
 
 void add_random(Handle& self, std::size_t count, const Vec3& velocity, double radius,
-                const Typed<"Numbers[float64] | None">& user_data) {
+                const Typed<"Numbers[float64] | None">& user_data, const Material& material) {
   const std::vector<double> data = optional_numbers(user_data, "user_data");
-  change(self, [&](Simulation& s) { s.add_random(count, velocity, radius, data); });
+  change(self, [&, own = material](Simulation& s) { s.add_random(count, velocity, radius, data, own); });
 }
 
 void add_inlet(Handle& self, Patch patch, double rate, const Vec3& velocity, double radius,
-               const Typed<"Numbers[float64] | None">& user_data) {
+               const Typed<"Numbers[float64] | None">& user_data, const Material& material) {
   const std::vector<double> data = optional_numbers(user_data, "user_data");
-  change(self, [&](Simulation& s) { s.add_inlet(patch, rate, velocity, radius, data); });
+  change(self, [&, own = material](Simulation& s) { s.add_inlet(patch, rate, velocity, radius, data, own); });
 }
 
 template <class T>
@@ -140,6 +156,17 @@ void bind_motion(Class& simulation) {
   simulation.def("set_field", setting_field(&Simulation::set_field), py::arg("field"), "The velocities of the medium.")
       .def("set_force", setting_field(&Simulation::set_force), about("Simulation::set_force"))
       .def(
+          "set_law",
+          [](Handle& self, const Typed<"Callable[[LawParticles, LawSamples, LawResult], object] | None">& law) {
+            ParticleLaw own = law_of(law);
+            change(self, [&](Simulation& s) { s.set_law(std::move(own)); });
+          },
+          py::arg("law"),
+          about(
+              "Simulation::set_law",
+              "A function of LawParticles, LawSamples and LawResult. It writes to the arrays of the result. All arrays "
+              "are valid during the call alone. None: there is no law."))
+      .def(
           "set_deformation",
           [](Handle& self, const DeformationHandle& deformation) {
             // The thread that reads frames for the former one may wait for Python's lock.
@@ -159,20 +186,21 @@ void bind_motion(Class& simulation) {
 void bind_adding(Class& simulation) {
   simulation
       .def("add", &add_scene<BodyScene>, py::arg("body"),
-           about("Simulation::add",
-                 "positions: float64 (n, 3). velocity: three numbers, or float64 (n, 3). radius: a number, or float64 "
-                 "(n,). user_data: a number for each name, the same for all of these particles. Returns as "
-                 "Environment.add(). Instead of positions, a ParticlesScene, a BodyScene, a CatheterScene or a "
-                 "SolidScene."))
+           about(
+               "Simulation::add",
+               "positions: float64 (n, 3). velocity: three numbers, or float64 (n, 3). radius: a number, or float64 "
+               "(n,). user_data: a number for each name, the same for all of these particles. material: a Material, or "
+               "float64 (n, 3): diameter, density and charge per mass of each. Returns as Environment.add(). Instead "
+               "of positions, a ParticlesScene, a BodyScene, a CatheterScene or a SolidScene."))
       .def("add", &add_scene<ParticlesScene>, py::arg("group"))
       .def("add", &add_scene<CatheterScene>, py::arg("catheter"))
       .def("add", &add_scene<SolidScene>, py::arg("solid"))
       .def("add", &add, py::arg("positions"), py::arg("velocity"), py::arg("radius") = 0.0,
-           py::arg("user_data") = py::none())
+           py::arg("user_data") = py::none(), py::arg("material") = py::none())
       .def("add_random", &add_random, py::arg("count"), py::arg("velocity"), py::arg("radius") = 0.0,
-           py::arg("user_data") = py::none(), doc("Simulation::add_random"))
+           py::arg("user_data") = py::none(), py::arg("material") = Material{}, doc("Simulation::add_random"))
       .def("add_inlet", &add_inlet, py::arg("patch"), py::arg("rate"), py::arg("velocity"), py::arg("radius") = 0.0,
-           py::arg("user_data") = py::none(), doc("Simulation::add_inlet"));
+           py::arg("user_data") = py::none(), py::arg("material") = Material{}, doc("Simulation::add_inlet"));
 }
 
 void bind_changes(Class& simulation) {

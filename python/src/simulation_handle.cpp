@@ -10,14 +10,6 @@ namespace py = pybind11;
 namespace dartcast::python {
 namespace {
 
-// A Python object that code without Python's lock may copy and destroy.
-std::shared_ptr<py::object> shared_object(py::object object) {
-  return {new py::object(std::move(object)), [](py::object* p) {
-            const py::gil_scoped_acquire acquire;
-            delete p;
-          }};
-}
-
 // Marks it as in use for ever. Other threads may use it until then.
 void expire(Usage& usage) {
   const py::gil_scoped_release release;
@@ -36,6 +28,13 @@ WallResponse response_of(const py::handle& given) {
 }
 
 }  // namespace
+
+std::shared_ptr<py::object> shared_object(py::object object) {
+  return {new py::object(std::move(object)), [](py::object* p) {
+            const py::gil_scoped_acquire acquire;
+            delete p;
+          }};
+}
 
 SimulationOwner::SimulationOwner(std::shared_ptr<EnvironmentHandle> environment, const SimulationOptions& options)
     : callers_(std::move(environment)) {

@@ -49,6 +49,9 @@ struct SimulationHandle {
   [[nodiscard]] Simulation& target() const { return get(); }
 };
 
+/// A Python object that code without Python's lock may copy and destroy.
+std::shared_ptr<pybind11::object> shared_object(pybind11::object object);
+
 /// A function that gets the environment at the end of each edit, and can read it until it returns; nothing
 /// where it is None.
 Simulation::AfterEdit after_edit_callback(pybind11::object function);

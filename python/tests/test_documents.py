@@ -15,8 +15,8 @@ import dartcast
 
 BLOCK = re.compile(r"```python\n(.*?)```(?:\s*```text\n(.*?)```)?", re.DOTALL)
 SCENE = re.compile(r"```toml\n(.*?)```", re.DOTALL)
-PAGES = ["python.md", "start.md", "questions.md", "howto/deformation.md", "howto/response.md", "howto/results.md",
-         "howto/cuts.md", "howto/objects.md", "howto/solvers.md"]
+PAGES = ["extending.md", "python.md", "start.md", "questions.md", "howto/deformation.md", "howto/response.md",
+         "howto/results.md", "howto/cuts.md", "howto/objects.md", "howto/solvers.md"]
 
 
 def test_all_pages_with_code_are_here(root: pathlib.Path) -> None:

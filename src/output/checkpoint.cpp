@@ -21,7 +21,7 @@ namespace dartcast {
 
 namespace {
 
-constexpr std::uint64_t magic = 0x37706b6374726164U;       // "dartckp7" on a machine of this byte order
+constexpr std::uint64_t magic = 0x38706b6374726164U;       // "dartckp8" on a machine of this byte order
 constexpr std::uint64_t part_magic = 0x31747270746b6364U;  // "dcktprt1"
 
 template <class T>
@@ -145,7 +145,7 @@ void fields(Archive& a, SavedParticles& p) {
     fields(a, p[p.held_weights][i]);
     fields(a, p[p.velocity][i]);
     value_as<std::uint8_t>(a, p[p.fate][i]);
-    values(a, p[p.contact_count][i], p[p.radius][i]);
+    values(a, p[p.contact_count][i], p[p.radius][i], p[p.diameter][i], p[p.density][i], p[p.charge_per_mass][i]);
     if (p[p.fate][i] > ParticleStatus::escaped) throw Error("a particle has an unknown status");
   }
 }

@@ -41,6 +41,11 @@ VtpFile particles_file(const Simulation& simulation) {
   file.add("kind", each(n, [&](std::size_t i) { return static_cast<std::uint8_t>(kind_of(complex, particles[i])); }));
   file.add("held", copy(simulation.held()));
   file.add("contacts", copy(simulation.contact_counts()));
+  if (!simulation.options().forces.terms.empty()) {
+    file.add("diameter", copy(simulation.diameters()));
+    file.add("density", copy(simulation.densities()));
+    file.add("charge_per_mass", copy(simulation.charges_per_mass()));
+  }
   const std::vector<std::string>& names = simulation.options().user_data;
   for (std::size_t k = 0; k < names.size(); ++k)
     file.add(names[k], each(n, [&](std::size_t i) { return simulation.user_data(i)[k]; }));

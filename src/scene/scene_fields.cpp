@@ -70,8 +70,8 @@ void read_fields(TomlTable& motion, const std::filesystem::path& folder, MotionS
     if (scene.substeps != 1)
       motion.fail("integrator", "integrator = \"rk4\" takes a step as one segment: leave substeps out");
   }
-  if (scene.force.given() && has_field && scene.drag == 0.0)
-    motion.fail("force", "a force has no effect on particles that follow a field without drag: give drag");
+  if (scene.force.given() && has_field && scene.drag == 0.0 && scene.forces.terms.empty())
+    motion.fail("force", "a force has no effect on particles that follow a field without drag: give drag or forces");
 }
 
 }  // namespace dartcast

@@ -2,6 +2,7 @@
 #include "dartcast/scene_file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <fstream>
@@ -40,6 +41,7 @@ class SceneReader {
       add_named(t, scene.solids, read_solid(t, folder_, scene.solids.size() + 1));
     scene.motion = motion(root.table("motion"));
     check_field_of_particles(root, scene);
+    fluid(root.table("fluid"), scene.motion.forces.fluid);
     scene.contact = contact(root.table("contact"));
     if (root.has("collisions")) collisions(root.table("collisions"), scene);
     for (TomlTable& t : root.tables("event")) scene.events.push_back(read_event(t));
@@ -162,9 +164,46 @@ class SceneReader {
           {{"carried", WallMotion::carried}, {"simultaneous", WallMotion::simultaneous}});
     if (scene.wall_motion == WallMotion::simultaneous && scene.substeps != 1)
       t.fail("wall_motion", "wall_motion = \"simultaneous\" takes a step as one segment: leave substeps out");
+    read_forces(t, scene);
     read_fields(t, folder_, scene);
     t.finish();
     return scene;
+  }
+
+  static void fluid(TomlTable t, Fluid& fluid) {
+    t.get("density", fluid.density, Range::positive);
+    t.get("viscosity", fluid.viscosity, Range::positive);
+    t.get("mean_free_path", fluid.mean_free_path, Range::not_negative);
+    t.finish();
+  }
+
+  static void read_forces(TomlTable& t, MotionScene& scene) {
+    static const std::vector<std::pair<std::string, Force>> all = {{"stokes", Force::stokes},
+                                                                   {"schiller-naumann", Force::schiller_naumann},
+                                                                   {"putnam", Force::putnam},
+                                                                   {"buoyancy", Force::buoyancy},
+                                                                   {"pressure-gradient", Force::pressure_gradient},
+                                                                   {"virtual-mass", Force::virtual_mass},
+                                                                   {"saffman-mei", Force::saffman_mei},
+                                                                   {"lorentz", Force::lorentz}};
+    std::vector<std::string> names;
+    t.get("forces", names);
+    for (const std::string& name : names) {
+      const auto found = std::find_if(all.begin(), all.end(), [&](const auto& f) { return f.first == name; });
+      if (found == all.end())
+        t.fail("forces", fmt::format("forces: \"{}\" is unknown; there are {}", name, fmt::join(all_names(all), ", ")));
+      scene.forces.terms.push_back(found->second);
+    }
+    t.get("electric_field", scene.forces.electric_field);
+    t.get("magnetic_field", scene.forces.magnetic_field);
+    if (!names.empty() && t.has("drag"))
+      t.fail("drag", "drag is a law of its own, without size and mass: leave drag out, or leave forces out");
+  }
+
+  static std::vector<std::string> all_names(const std::vector<std::pair<std::string, Force>>& all) {
+    std::vector<std::string> names;
+    for (const auto& f : all) names.push_back(f.first);
+    return names;
   }
 
   static void response(TomlTable& t, WallResponse& r) {

@@ -80,11 +80,20 @@ void read_velocity(TomlTable& t, ParticlesScene& scene, const InletParticles& in
   scene.with_field = with_field;
 }
 
+void read_material(TomlTable& t, ParticlesScene& scene) {
+  t.get("diameter", scene.material.diameter, Range::positive);
+  t.get("density", scene.material.density, Range::positive);
+  t.get("charge_per_mass", scene.material.charge_per_mass, {-Range::unlimited, Range::unlimited});
+  if (t.get("interception", scene.interception) && t.has("radius"))
+    t.fail("interception", "interception takes the radius from the diameter: leave radius out");
+}
+
 }  // namespace
 
 ParticlesScene read_particles(TomlTable& t, const std::filesystem::path& folder) {
   ParticlesScene scene;
   t.get("radius", scene.radius, Range::not_negative);
+  read_material(t, scene);
   std::uint64_t count = 0;
   std::string positions;
   InletParticles inlet;

@@ -25,7 +25,7 @@ constexpr std::size_t tracer_grain = 256;
 
 Aiming::Aiming(const Environment& environment, Followers& followers, const MovingVertices& motion,
                const SimulationOptions& options)
-    : environment_(environment), motion_(motion), options_(options) {
+    : environment_(environment), motion_(motion), options_(options), forces_(environment, motion, options) {
   followers.add([this](const ComplexEditReport& edit, OrphanPolicy /*orphaned*/) {
     if (field_) field_->update_after_edit(edit, environment_.complex());
     if (force_) force_->update_after_edit(edit, environment_.complex());
@@ -36,6 +36,7 @@ void Aiming::load_step() {
   if (options_.integrator == Integrator::rk4 && !field_)
     throw InvalidArgument(
         "simulation: the integrator rk4 follows a velocity field, but there is none: call set_field()");
+  if (forces_.acts()) forces_.check(fields());
   if (field_) field_->hold(motion_.time(), motion_.time() + options_.dt);
   if (force_) force_->hold(motion_.time(), motion_.time() + options_.dt);
 }
@@ -82,17 +83,19 @@ void Aiming::start_with_field(ParticleSet& set, std::size_t first, double time) 
 
 void Aiming::set_times(double begin, double duration) {
   const std::array<double, 3> times = {begin, begin + 0.5 * duration, begin + duration};
-  const std::size_t count = options_.integrator == Integrator::rk4 ? 3 : 1;
+  const std::size_t in_forces = forces_.acts() ? forces_.moments() : 1;
+  const std::size_t count = options_.integrator == Integrator::rk4 ? 3 : in_forces;
+  begin_ = begin;
   const CellComplex& complex = environment_.complex();
   if (field_) field_->set_times(std::span(times).first(count), complex, environment_.threads());
-  if (force_) force_->set_times(std::span(times).first(1), complex, environment_.threads());
+  if (force_) force_->set_times(std::span(times).first(in_forces), complex, environment_.threads());
 }
 
 // The share of a velocity that drag takes within dt.
 double Aiming::lost_to_drag(double dt) const { return -exponential_less_one(-options_.drag * dt); }
 
 Acceleration Aiming::acceleration(double dt) const {
-  if (field_ || force_) return {};
+  if (field_ || force_ || forces_.acts()) return {};
   if (options_.drag == 0.0) return {options_.gravity, dt};
   return {options_.gravity * (lost_to_drag(dt) / (options_.drag * dt)), dt};
 }
@@ -111,6 +114,7 @@ Aiming::Segment Aiming::segment_of(ParticleSet& set, double dt, bool moving) {
 
 void Aiming::aim(ParticleSet& set, double dt, bool moving) {
   const Segment segment = segment_of(set, dt, moving);
+  if (forces_.acts()) return aim_by_forces(segment, set);
   options_.integrator == Integrator::rk4 ? aim_by_runge_kutta(segment) : aim_at_field(segment);
 }
 
@@ -188,6 +192,23 @@ void Aiming::aim_by_runge_kutta(const Segment& segment) {
       targets_[i] = flushed(follows ? s.position + a.velocity * segment.dt : a.target);
     }
   });
+}
+
+ForceStep::Fields Aiming::fields() const { return {field_ ? &*field_ : nullptr, force_ ? &*force_ : nullptr}; }
+
+void Aiming::set_law(ParticleLaw law) {
+  SimulationOptions options = options_;
+  options.forces.terms = {Force::lorentz};  // a term that asks for nothing
+  if (law) check_forces(options, environment_.map().dimension() == 2);
+  forces_.set_law(std::move(law));
+}
+
+// First those that do not move by themselves.
+void Aiming::aim_by_forces(const Segment& segment, ParticleSet& set) {
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    if (segment.particles[i].held || segment.statuses[i] != ParticleStatus::alive) aim_one(segment, i);
+  }
+  forces_.aim({fields(), begin_, segment.dt, segment.moving}, set, targets_);
 }
 
 void Aiming::aim_stuck(ParticleSet& set, double dt) {

@@ -10,12 +10,13 @@
 
 #include "dartcast/simulation.hpp"
 #include "simulation/flow_aim.hpp"
+#include "simulation/force_step.hpp"
 #include "simulation/moving_vertices.hpp"
 #include "simulation/particle_set.hpp"
 
 namespace dartcast {
 
-/// Gravity, drag, the velocity field and the force of a simulation.
+/// Gravity, drag, the velocity field and the force of a simulation; or its forces and its user's law.
 class Aiming {
  public:
   /// All outlive it.
@@ -33,6 +34,7 @@ class Aiming {
   [[nodiscard]] Vec3 flow_at_corner(SimplexId at, unsigned corner) const;
   /// Gives particles from this one on the field's velocity at their places. Throws as check_field().
   void start_with_field(ParticleSet& set, std::size_t first, double time);
+  void set_law(ParticleLaw law);
   /// Reads what the next step needs of the fields' files, before that step changes anything. Throws as
   /// VectorField::hold(), and InvalidArgument if an integrator has no field to follow.
   void load_step();
@@ -65,6 +67,8 @@ class Aiming {
   [[nodiscard]] Segment segment_of(ParticleSet& set, double dt, bool moving);
   void aim_at_field(const Segment& segment);
   void aim_by_runge_kutta(const Segment& segment);
+  void aim_by_forces(const Segment& segment, ParticleSet& set);
+  [[nodiscard]] ForceStep::Fields fields() const;
   void aim_one(const Segment& segment, std::size_t i);
   void aim_in_flight(const Segment& segment, std::size_t begin, std::size_t end);
   void aim_in_flow(const Segment& segment, const detail::FlowScene& scene, std::size_t begin, std::size_t end,
@@ -79,6 +83,8 @@ class Aiming {
   const SimulationOptions& options_;
   std::optional<VelocityField> field_;
   std::optional<VectorField> force_;  // accelerations, on top of gravity
+  ForceStep forces_;
+  double begin_ = 0.0;  // of the segment, s
   std::vector<Vec3> targets_;
 };
 

@@ -59,6 +59,7 @@ class Inlets {
     Vec3 velocity;
     double radius;
     std::vector<double> user_data;
+    Material material;
     bool with_field;
   };
 

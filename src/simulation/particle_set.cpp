@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include "dartcast/error.hpp"
+#include "simulation/force_step.hpp"
 
 namespace dartcast {
 
@@ -16,7 +18,7 @@ void check(const NewParticle& particle, const Environment& environment, const Si
     throw InvalidArgument(fmt::format("simulation: {} ", fmt::format(fmt::runtime(whose), number)) +
                           fmt::format(fmt::runtime(what), values...));
   };
-  const auto& [v, radius, numbers] = particle;
+  const auto& [v, radius, numbers, material] = particle;
   if (!is_finite(v)) fail("velocity must be finite");
   if (environment.map().dimension() == 2 && v.z != 0.0)
     fail("velocity is ({}, {}, {}): in the plane its z must be 0", v.x, v.y, v.z);
@@ -24,6 +26,7 @@ void check(const NewParticle& particle, const Environment& environment, const Si
   if (radius > 0.0 && options.wall_motion == WallMotion::simultaneous)
     fail("radius is {}: points alone move at the same time as the walls: leave it out, or take the wall motion carried",
          radius);
+  if (const std::string wrong = wrong_material(material, options.forces); !wrong.empty()) fail("{}", wrong);
   if (!numbers.empty() && numbers.size() != options.user_data.size())
     throw InvalidArgument(fmt::format("simulation: {} numbers of user data for a particle; the options name {}",
                                       numbers.size(), options.user_data.size()));
@@ -35,6 +38,9 @@ void ParticleSet::complete(std::uint64_t id, const NewParticle& particle) {
   table[table.id][i] = id;
   table[table.velocity][i] = particle.velocity;
   table[table.radius][i] = particle.radius;
+  table[table.diameter][i] = particle.material.diameter;
+  table[table.density][i] = particle.material.density;
+  table[table.charge_per_mass][i] = particle.material.charge_per_mass;
   const std::span<double> numbers = table[table.user_data].last(particle.user_data.size());
   std::copy(particle.user_data.begin(), particle.user_data.end(), numbers.begin());
   if (particle.radius > 0.0) ++spheres;

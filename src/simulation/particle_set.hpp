@@ -26,6 +26,9 @@ struct ParticleTable : Table {
   Column<std::uint32_t> contact_count = add_column<std::uint32_t>();
   Column<double> radius = add_column<double>();
   Column<std::uint8_t> held = add_column<std::uint8_t>();  ///< in the last step
+  Column<double> diameter = add_column<double>();          ///< as Material has it; so are the next two
+  Column<double> density = add_column<double>();
+  Column<double> charge_per_mass = add_column<double>();
   Column<double> user_data;
 };
 static_assert(ParticleStatus{} == ParticleStatus::alive);
@@ -44,6 +47,7 @@ struct NewParticle {
   Vec3 velocity;
   double radius = 0.0;
   std::span<const double> user_data;
+  Material material = {};
 };
 
 /// Row i of the table is that of state i, but while particles are added.

@@ -11,6 +11,7 @@
 #include "base/are_several.hpp"
 #include "complex/simplex.hpp"
 #include "dartcast/error.hpp"
+#include "simulation/force_step.hpp"
 #include "simulation/polyline.hpp"
 #include "simulation/timer.hpp"
 #include "tracking/carry.hpp"
@@ -26,7 +27,8 @@ WallResponses responses_of(const SimulationOptions& options, const Combinatorial
 }
 
 // Names of the arrays that output writes itself.
-constexpr std::string_view own_names[] = {"id", "radius", "velocity", "cell", "kind", "held", "contacts"};
+constexpr std::string_view own_names[] = {"id",   "radius",   "velocity", "cell",    "kind",
+                                          "held", "contacts", "diameter", "density", "charge_per_mass"};
 
 void check_names(const std::vector<std::string>& names) {
   for (auto name = names.begin(); name != names.end(); ++name) {
@@ -67,7 +69,7 @@ void check_wall_motion(const SimulationOptions& o) {
         "motion carried");
 }
 
-void check(const SimulationOptions& o) {
+void check(const SimulationOptions& o, bool planar) {
   if (!(o.dt >= smallest_dt && o.dt <= largest_dt))
     throw InvalidArgument(fmt::format("simulation: dt is {}: it must be between 2^-100 and 2^100 s", o.dt));
   if (!(o.drag >= 0.0) || !std::isfinite(o.drag))
@@ -76,6 +78,7 @@ void check(const SimulationOptions& o) {
   if (o.substeps == 0) throw InvalidArgument("simulation: substeps must be at least 1");
   check_integrator(o);
   check_wall_motion(o);
+  check_forces(o, planar);
   check(o.step, "simulation");
   check_names(o.user_data);
   if (!o.collisions) return;
@@ -107,7 +110,7 @@ ParticleSystem::ParticleSystem(Environment& environment, Followers& followers, M
       aiming_(environment, followers, motion, options_),
       sampled_(environment, followers, options_.user_data),
       contacts_(environment, followers, motion, options_, responses_) {
-  check(options);
+  check(options, environment.map().dimension() == 2);
   if (environment.map().dimension() == 2 && options.gravity.z != 0.0)
     throw InvalidArgument(fmt::format("simulation: gravity is ({}, {}, {}): in the plane its z must be 0",
                                       options.gravity.x, options.gravity.y, options.gravity.z));

@@ -47,7 +47,8 @@ class ParticleSystem final : public SimulationComponent {
   void take_over(const std::vector<std::string>& packed);
   std::vector<AddResult> add(std::span<const Vec3> positions, const NewParticle& particle);
   std::vector<AddResult> add(std::span<const Vec3> positions, std::span<const Vec3> velocities,
-                             std::span<const double> radii, std::span<const double> user_data);
+                             std::span<const double> radii, std::span<const double> user_data,
+                             std::span<const Material> materials);
   void add_random(std::size_t count, const NewParticle& particle);
   /// Begins a step.
   void inject(Inlets& inlets);

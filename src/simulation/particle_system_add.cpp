@@ -16,17 +16,23 @@ namespace dartcast {
 std::vector<AddResult> ParticleSystem::add(std::span<const Vec3> positions, const NewParticle& particle) {
   check(particle, environment_, options_, "a particle's");
   const std::vector<Vec3> velocities(positions.size(), particle.velocity);
-  return add(positions, velocities, std::vector<double>(positions.size(), particle.radius), particle.user_data);
+  return add(positions, velocities, std::vector<double>(positions.size(), particle.radius), particle.user_data,
+             {&particle.material, 1});
 }
 
 std::vector<AddResult> ParticleSystem::add(std::span<const Vec3> positions, std::span<const Vec3> velocities,
-                                           std::span<const double> radii, std::span<const double> user_data) {
+                                           std::span<const double> radii, std::span<const double> user_data,
+                                           std::span<const Material> materials) {
   if (velocities.size() != positions.size() || radii.size() != positions.size())
     throw InvalidArgument(fmt::format("simulation: {} velocities and {} radii for {} positions", velocities.size(),
                                       radii.size(), positions.size()));
-  check({{}, 0.0, user_data}, environment_, options_, "a particle's");
+  if (materials.size() > 1 && materials.size() != positions.size())
+    throw InvalidArgument(fmt::format("simulation: {} materials for {} positions", materials.size(), positions.size()));
+  const auto material = [&](std::size_t i) {
+    return materials.empty() ? Material{} : materials[materials.size() == 1 ? 0 : i];
+  };
   for (std::size_t i = 0; i < positions.size(); ++i)
-    check({velocities[i], radii[i], {}}, environment_, options_, "particle {}'s", i);
+    check({velocities[i], radii[i], user_data, material(i)}, environment_, options_, "particle {}'s", i);
   std::vector<AddResult> added;
   set_.enlarge([&] {
     added = add_own(positions);
@@ -34,7 +40,7 @@ std::vector<AddResult> ParticleSystem::add(std::span<const Vec3> positions, std:
       if (added[i].location.place != Place::free) continue;
       const std::uint64_t id = set_.next_id++;
       const bool mine = added[i].particle != AddResult().particle;
-      if (mine) set_.complete(id, {velocities[i], radii[i], user_data});
+      if (mine) set_.complete(id, {velocities[i], radii[i], user_data, material(i)});
     }
   });
   totals_.start = set_.next_id - totals_.injected;

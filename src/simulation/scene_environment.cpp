@@ -109,7 +109,7 @@ void check_can_be_spread(const Scene& scene) {
     refuse_if(!field->files.empty() || static_cast<bool>(field->samples.read), "a field from files");
   refuse_if(!scene.motion.sampled.empty(), "arrays to sample from files");
   for (const ParticlesScene& p : scene.particles) {
-    refuse_if(p.radius > 0.0, "spheres");
+    refuse_if(p.radius > 0.0 || p.interception, "spheres");
     const auto* placed = std::get_if<PlacedParticles>(&p.source);
     const auto* seeds = placed != nullptr ? std::get_if<ParticleSeeds>(&placed->positions) : nullptr;
     for (std::size_t i = 0; seeds != nullptr && i < seeds->radii.size(); ++i)

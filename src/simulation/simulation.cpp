@@ -139,29 +139,36 @@ void Simulation::pull(std::span<const Vec3> displacement, double duration) {
   parts_->motion.pull(displacement, duration);
 }
 
+void Simulation::set_law(ParticleLaw law) { parts_->particles.aiming().set_law(std::move(law)); }
+
 void Simulation::add_inlet(Patch patch, double rate, const Vec3& velocity, double radius,
-                           std::span<const double> user_data) {
-  const ParticlesScene group{{}, velocity, radius, {user_data.begin(), user_data.end()}};
+                           std::span<const double> user_data, const Material& material) {
+  const ParticlesScene group{.velocity = velocity,
+                             .radius = radius,
+                             .user_data = {user_data.begin(), user_data.end()},
+                             .material = material};
   parts_->inlets.add(group, InletParticles{{}, rate}, patch, parts_->particles.sampled_part());
   parts_->motion_of_part = {};
 }
 
 std::vector<AddResult> Simulation::add(std::span<const Vec3> positions, const Vec3& velocity, double radius,
-                                       std::span<const double> user_data) {
-  return parts_->particles.add(positions, {velocity, radius, user_data});
+                                       std::span<const double> user_data, const Material& material) {
+  return parts_->particles.add(positions, {velocity, radius, user_data, material});
 }
 
 std::vector<AddResult> Simulation::add(std::initializer_list<Vec3> positions, const Vec3& velocity, double radius) {
-  return parts_->particles.add({positions.begin(), positions.size()}, {velocity, radius, {}});
+  return parts_->particles.add({positions.begin(), positions.size()}, {velocity, radius, {}, {}});
 }
 
 std::vector<AddResult> Simulation::add(std::span<const Vec3> positions, std::span<const Vec3> velocities,
-                                       std::span<const double> radii, std::span<const double> user_data) {
-  return parts_->particles.add(positions, velocities, radii, user_data);
+                                       std::span<const double> radii, std::span<const double> user_data,
+                                       std::span<const Material> materials) {
+  return parts_->particles.add(positions, velocities, radii, user_data, materials);
 }
 
-void Simulation::add_random(std::size_t count, const Vec3& velocity, double radius, std::span<const double> user_data) {
-  parts_->particles.add_random(count, {velocity, radius, user_data});
+void Simulation::add_random(std::size_t count, const Vec3& velocity, double radius, std::span<const double> user_data,
+                            const Material& material) {
+  parts_->particles.add_random(count, {velocity, radius, user_data, material});
 }
 
 namespace {
@@ -207,6 +214,18 @@ std::span<const Vec3> Simulation::velocities() const { return parts_->particles.
 std::span<const ParticleStatus> Simulation::statuses() const { return parts_->particles.set().statuses(); }
 std::span<const std::uint32_t> Simulation::contact_counts() const { return parts_->particles.set().contact_counts(); }
 std::span<const double> Simulation::radii() const { return parts_->particles.set().radii(); }
+std::span<const double> Simulation::diameters() const {
+  const ParticleTable& table = parts_->particles.set().table;
+  return table[table.diameter];
+}
+std::span<const double> Simulation::densities() const {
+  const ParticleTable& table = parts_->particles.set().table;
+  return table[table.density];
+}
+std::span<const double> Simulation::charges_per_mass() const {
+  const ParticleTable& table = parts_->particles.set().table;
+  return table[table.charge_per_mass];
+}
 std::span<const std::uint8_t> Simulation::held() const { return parts_->particles.set().held(); }
 std::span<const double> Simulation::user_data(std::size_t particle) const {
   return std::as_const(parts_->particles).set().user_data(particle);

@@ -50,8 +50,9 @@ struct Simulation::Parts {
     particles.set_part(*part);
   }
 
-  /// A group with zeros for the sampled numbers behind its user's.
+  /// A group with its radius, and with zeros for the sampled numbers behind its user's.
   [[nodiscard]] ParticlesScene completed(ParticlesScene group) {
+    if (group.interception) group.radius = 0.5 * group.material.diameter;
     std::vector<double>& data = group.user_data;
     if (!data.empty()) data.resize(data.size() + particles.sampled().size());
     return group;

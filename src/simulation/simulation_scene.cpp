@@ -26,7 +26,14 @@ void add_placed(Simulation& simulation, const ParticlesScene& group, const Place
   std::vector<double> radii = seeds->radii;
   if (velocities.empty()) velocities.assign(seeds->points.size(), group.velocity);
   if (radii.empty()) radii.assign(seeds->points.size(), group.radius);
-  const auto added = simulation.add(seeds->points, velocities, radii, group.user_data);
+  std::vector<Material> materials(seeds->points.size(), group.material);
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    if (!seeds->diameters.empty()) materials[i].diameter = seeds->diameters[i];
+    if (!seeds->densities.empty()) materials[i].density = seeds->densities[i];
+    if (!seeds->charges_per_mass.empty()) materials[i].charge_per_mass = seeds->charges_per_mass[i];
+    if (group.interception) radii[i] = 0.5 * materials[i].diameter;
+  }
+  const auto added = simulation.add(seeds->points, velocities, radii, group.user_data, materials);
   for (std::size_t i = 0; i < added.size(); ++i) check_place(*seeds, i, added[i].location.place);
 }
 
@@ -65,7 +72,8 @@ void Simulation::add(const ParticlesScene& given) {
   if (const auto* placed = std::get_if<PlacedParticles>(&group.source)) {
     add_placed(*this, group, *placed);
   } else {
-    add_random(std::get<RandomParticles>(group.source).count, group.velocity, group.radius, group.user_data);
+    add_random(std::get<RandomParticles>(group.source).count, group.velocity, group.radius, group.user_data,
+               group.material);
   }
   if (group.with_field) particles.aiming().start_with_field(particles.set(), first, time());
 }

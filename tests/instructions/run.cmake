@@ -20,6 +20,25 @@ foreach(kind_and_bound still=274 moving=749 lattice=1890 long=2845 long_moving=8
   endif()
 endforeach()
 
+# A step with forces against one with a constant drag.
+foreach(kind drag forces)
+  execute_process(
+    COMMAND ${VALGRIND} --tool=callgrind --callgrind-out-file=/dev/null "--toggle-collect=dartcast::Simulation::step(*" ${PROGRAM} ${kind}
+    RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE log)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "${kind}: ${output}${log}")
+  endif()
+  string(REGEX MATCH "([0-9]+) particle-steps" ignored "${output}")
+  set(steps ${CMAKE_MATCH_1})
+  string(REGEX MATCH "Collected : ([0-9]+)" ignored "${log}")
+  math(EXPR ${kind} "${CMAKE_MATCH_1} / ${steps}")
+  message(STATUS "${kind}: ${${kind}} instructions per particle-step")
+endforeach()
+math(EXPR allowed "${drag} * 5 / 2")
+if(forces GREATER allowed OR drag LESS 50)
+  set(wrong "${wrong} forces")
+endif()
+
 # Edits touch a few cells, however many there are: 40 of them after the first 10, which list cells and particles once.
 function(count_edits edge count into)
   list(TRANSFORM ARGN REPLACE "(.+)" "--toggle-collect=dartcast::Environment::\\1(*")

@@ -3,6 +3,7 @@
 // vertex. The count is the code that Environment::advance() executes (run.cmake); the number of particle-steps is printed,
 // and how many steps were split. And `steps edits EDGE COUNT`:
 // edits of a box of EDGE^3 cells, each followed by the particles. `steps cut`: one cut through the wall of a vessel. `steps
+// drag` and `steps forces`: whole steps of drops in a flow, by a constant drag, and by Schiller-Naumann's with buoyancy. `steps
 // travel`: walks that have met no wall are packed for another rank, and unpacked, 10,000 at a time; it also prints times.
 #include <algorithm>
 #include <chrono>
@@ -21,6 +22,7 @@
 #include "dartcast/generators.hpp"
 #include "dartcast/map_edits.hpp"
 #include "dartcast/response.hpp"
+#include "dartcast/simulation.hpp"
 #include "simulation/seeding.hpp"
 #include "tracking/batch/traveller.hpp"
 
@@ -146,6 +148,28 @@ int rest_in_corner() {
   return 0;
 }
 
+// Drops of many sizes in a swirl, some 0.1 cells a step.
+int drops(bool by_forces) {
+  Environment environment = make_environment();
+  SimulationOptions options;
+  options.dt = 0.01;
+  options.gravity = {0, 0, -9.81};
+  options.drag = by_forces ? 0.0 : 3.0;
+  if (by_forces) {
+    options.forces.terms = {Force::schiller_naumann, Force::buoyancy};
+    options.forces.fluid = {1.2, 1.8e-5, 0.0};
+  }
+  Simulation simulation(environment, options);
+  std::vector<Vec3> flow;
+  for (const Vec3& x : environment.positions()) flow.push_back({5.0 - x.y, x.x - 5.0, 8.0 + 0.2 * x.x});
+  simulation.set_field(VelocityField(environment.complex(), flow));
+  for (std::size_t i = 0; i < 10; ++i)
+    simulation.add_random(particles / 10, {}, 0.0, {}, {1e-4 * (1.0 + 0.1 * double(i)), 1000.0, 0.0});
+  for (std::size_t step = 0; step < steps; ++step) simulation.step();
+  std::printf("%zu particle-steps\n", particles * steps);
+  return 0;
+}
+
 int travel() {
   constexpr std::size_t batch = 10'000;
   constexpr std::size_t batches = 21;
@@ -181,6 +205,7 @@ int main(int argc, char** argv) {
   if (std::strcmp(kind, "corner") == 0) return rest_in_corner();
   if (std::strcmp(kind, "cut") == 0) return cut_vessel();
   if (std::strcmp(kind, "travel") == 0) return travel();
+  if (std::strcmp(kind, "drag") == 0 || std::strcmp(kind, "forces") == 0) return drops(kind[0] == 'f');
   const bool plane = std::strncmp(kind, "plane", 5) == 0;
   const bool moving = std::strstr(kind, "moving") != nullptr;
   const bool lattice = std::strcmp(kind, "lattice") == 0;

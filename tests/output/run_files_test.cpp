@@ -162,7 +162,9 @@ TEST_F(RunFilesTest, ColumnsOfSeedsThatHaveNoMeaningAreRefused) {
     EXPECT_NE(error.find(part), std::string::npos) << error;
     EXPECT_FALSE(fs::exists(folder));
   };
-  expect_error("x,y,z,mass\n1,1,1,1\n", ":1: the column 'mass' is unknown; there are x, y, z, vx, vy, vz and radius");
+  expect_error(
+      "x,y,z,mass\n1,1,1,1\n",
+      ":1: the column 'mass' is unknown; there are x, y, z, vx, vy, vz, radius, diameter, density and charge_per_mass");
   expect_error("x,y,z,\n1,1,1,\n", ":1: the column '' is unknown");
   expect_error("x,y,z,vx,vy\n1,1,1,1,1\n", ":1: there is no column 'vz'");
   expect_error("x,y,z,x\n1,1,1,1\n", ":1: there are two columns 'x'");

@@ -61,12 +61,13 @@ Scene Plan::scene() const {
   }
   s.environment.mesh = std::move(mesh);
   if (case_[Knob::motion] != 0) s.deformation.push_back({deformation(), {}, {}, {}, 0.0});
-  s.particles.push_back({RandomParticles{60}, velocity(), 0.0, user_data()});
-  if (has_inlet()) s.particles.push_back({InletParticles{door_, 40.0}, {}, 0.0, user_data()});
+  s.particles.push_back({RandomParticles{60}, velocity(), 0.0, user_data(), material()});
+  if (has_inlet()) s.particles.push_back({InletParticles{door_, 40.0}, {}, 0.0, user_data(), material()});
   s.user_data = o.user_data;
   s.motion.dt = o.dt;
   s.motion.gravity = o.gravity;
   s.motion.drag = o.drag;
+  s.motion.forces = o.forces;
   s.contact.general = o.response;
   return s;
 }
@@ -82,6 +83,8 @@ SimulationOptions Plan::options(Ranks* ranks) const {
   if (has(3)) o.user_data = {"first", "second"};
   if (has_field() && has(13) && o.drag == 0.0 && !collides() && case_[Knob::simultaneous] == 0)
     o.integrator = Integrator::rk4;
+  else if (has(17) && o.drag == 0.0 && !collides())
+    o.forces = forces();
   if (collides()) o.collisions = CollisionOptions{.restitution = 0.5, .friction = 0.2};
   if (case_[Knob::simultaneous] != 0 && !collides() && !has_spheres())
     o.wall_motion = WallMotion::simultaneous;
@@ -94,12 +97,12 @@ void Plan::fill(Simulation& s, bool particles) const {
   if (case_[Knob::motion] != 0) s.set_deformation({{deformation()}, s.environment().positions()});
   if (has(5)) s.set_statistics(statistics());
   if (has_field()) s.set_field({s.environment().complex(), field(), has(15) ? FieldFrame::mesh : FieldFrame::space});
-  if (has_inlet()) s.add_inlet(s.environment().map().patch(door_), 40.0, {}, 0.0, user_data());
+  if (has_inlet()) s.add_inlet(s.environment().map().patch(door_), 40.0, {}, 0.0, user_data(), material());
   if (case_[Knob::edit] != 0) s.set_events(events());
   if (space_ && has(6)) s.set_remeshing({.every = 2, .options = {}});
   if (space_ && has(7)) s.set_adaptive_subdivision({.every = 2, .options = {.max_particles = 6, .min_particles = 2}});
-  if (particles) s.add_random(has(8) ? 60 : 12, velocity(), 0.0, user_data());
-  if (particles && has_spheres()) s.add_random(10, {}, 0.15 * scene_.edge);
+  if (particles) s.add_random(has(8) ? 60 : 12, velocity(), 0.0, user_data(), material());
+  if (particles && has_spheres()) s.add_random(10, {}, 0.15 * scene_.edge, {}, material());
   if (space_ && has(9)) add_body(s);
   if (space_ && has(10)) add_solid(s);
   if (space_ && has(11)) add_catheter(s);
@@ -113,6 +116,17 @@ Vec3 Plan::place(Random& random) const {
   return {random.uniform(scene_.low.x, scene_.high.x), random.uniform(scene_.low.y, scene_.high.y),
           random.uniform(scene_.low.z, scene_.high.z)};
 }
+
+ForceOptions Plan::forces() const {
+  ForceOptions f;
+  f.terms = {has(18) ? Force::schiller_naumann : Force::stokes, Force::buoyancy, Force::saffman_mei, Force::lorentz};
+  if (!has(15)) f.terms.push_back(Force::virtual_mass);
+  f.fluid = {1.2, 0.1 * scene_.edge * scene_.edge, has(19) ? 0.01 * scene_.edge : 0.0};
+  f.magnetic_field = {0.0, 0.0, 2.0};
+  return f;
+}
+
+Material Plan::material() const { return {0.1 * scene_.edge, has(20) ? 1.0 : 1000.0, 1.5}; }
 
 WallResponse Plan::response() const {
   const std::string_view name = case_.name(Knob::response);

@@ -37,6 +37,8 @@ class Plan {
   [[nodiscard]] Vec3 velocity() const;
   [[nodiscard]] std::unique_ptr<Random> in(std::uint64_t part) const;
   [[nodiscard]] Vec3 place(Random& random) const;
+  [[nodiscard]] ForceOptions forces() const;
+  [[nodiscard]] Material material() const;
   [[nodiscard]] WallResponse response() const;
   [[nodiscard]] std::vector<Vec3> field() const;
   [[nodiscard]] DeformationStep deformation() const;

@@ -199,6 +199,41 @@ def of_states() -> Calls:
     }
 
 
+def of_forces() -> Calls:
+    drop = dc.records.Material(1e-4, 1000.0, 2.0)
+    forces = dc.records.ForceOptions([dc.records.Force.PUTNAM, dc.records.Force.LORENTZ], dc.records.Fluid(1.2, 1.8e-5))
+    own = dc.Simulation(environment(), dc.SimulationOptions(dt=0.1, forces=forces))
+    own.add([[0.4, 0.4, 0.4]], [0.0, 0.0, 0.0], material=drop)
+    arrays = {"LawParticles": "ids positions velocities diameters densities charges_per_mass user_data time",
+              "LawSamples": "velocities gradients rates", "LawResult": "accelerations rates rotations"}
+
+    def by_law() -> None:
+        made = simulation()
+
+        def law(*given: object) -> None:
+            for part, names in zip(given, arrays.values()):
+                for name in names.split():
+                    getattr(part, name)
+
+        made.set_law(law)
+        made.step()
+        made.set_law(None)
+
+    def raise_in_law(s: dc.Simulation) -> None:
+        s.set_law(raising)
+        refused(s.step)()
+
+    return {
+        "Simulation.set_law": by_law, "Simulation.set_law: refused": refused(lambda: own.set_law(3)),
+        "Simulation.set_law: raised": lambda: raise_in_law(simulation()),
+        "Simulation.diameters": lambda: own.diameters, "Simulation.densities": lambda: own.densities,
+        "Simulation.charges_per_mass": lambda: own.charges_per_mass,
+        "Simulation.add: material": refused(lambda: own.add([[0.4, 0.4, 0.4]], [0.0] * 3, material=[[0.0] * 3])),
+        **{name: refused(getattr(dc.records, name)) for name in arrays},
+        **{f"{part}.{name}": by_law for part, names in arrays.items() for name in names.split()},
+    }
+
+
 def of_statistics() -> Calls:
     plane = dc.records.SectionPlane("middle", [0.5, 0.5, 0.5], [0.0, 0.0, 1.0])
     options = dc.StatisticsOptions(hits=True, residence=True, pathlines_every=2)
@@ -279,5 +314,5 @@ def of_runs() -> Calls:
 
 
 def calls() -> Calls:
-    return (of_making() | of_adding() | of_motion() | of_changes() | of_states() | of_statistics()
+    return (of_making() | of_adding() | of_motion() | of_changes() | of_states() | of_forces() | of_statistics()
             | of_scenes() | of_runs())

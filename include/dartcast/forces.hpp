@@ -1,0 +1,93 @@
+// Forces on particles of a given size and mass in a fluid: laws of the library, and laws of one's own.
+//
+// dv/dt = c (u - v) + a + v x r with the fluid's velocity u. Laws give the rate c, the acceleration a and the rotation r.
+// Each step holds them, and is then exact for any c dt (docs/method.md). The fluid's velocity is that of the field.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "dartcast/vec3.hpp"
+
+namespace dartcast {
+
+/// A term of the equation of motion. Re = |u - v| d / nu, tau = rho_p d^2 / (18 mu), k = rho_f / rho_p. Give one of the
+/// three laws of drag at most.
+enum class Force : std::uint8_t {
+  stokes,             ///< drag: c = 1 / tau
+  schiller_naumann,   ///< drag: c = (1 + 0.15 Re^0.687) / tau; from Re 1000 on with a drag coefficient of 0.44 (1935)
+  putnam,             ///< drag: c = (1 + Re^(2/3) / 6) / tau; from Re 1000 on with 0.424 (1961)
+  buoyancy,           ///< gravity counts times 1 - k
+  pressure_gradient,  ///< k Du/Dt
+  virtual_mass,       ///< k (Du/Dt - dv/dt) / 2: the left side gets the second part
+  saffman_mei,        ///< lift by shear: k C (u - v) x curl u, after R. Mei, 1992, up to and beyond Re 40
+  lorentz             ///< q (E + v x B), by Boris' scheme
+};
+
+/// The medium around the particles, SI units.
+struct Fluid {
+  double density = 0.0;         ///< kg / m^3, 0: of no effect
+  double viscosity = 0.0;       ///< Pa s, dynamic
+  double mean_free_path = 0.0;  ///< m; above 0 drag is divided by Cunningham's 1 + Kn (1.257 + 0.4 exp(-1.1 / Kn))
+};
+
+/// The forces of a simulation.
+struct ForceOptions {
+  std::vector<Force> terms = {};
+  Fluid fluid = {};
+  Vec3 electric_field = {};  ///< V / m, everywhere the same
+  Vec3 magnetic_field = {};  ///< T
+};
+
+/// The matter of a particle.
+struct Material {
+  double diameter = 0.0;         ///< m, of a sphere of its mass. Walls know of the radius alone.
+  double density = 0.0;          ///< kg / m^3
+  double charge_per_mass = 0.0;  ///< C / kg
+};
+
+/// The derivatives of the velocity along each axis: x = du/dx and so on.
+struct VelocityGradient {
+  Vec3 x, y, z;
+
+  [[nodiscard]] Vec3 curl() const { return {y.z - z.y, z.x - x.z, x.y - y.x}; }
+  /// Its product with a vector: the change of the velocity along that way.
+  [[nodiscard]] Vec3 along(const Vec3& way) const { return x * way.x + y * way.y + z * way.z; }
+};
+
+/// The particles at a stage of a step: its start, or its predicted middle. Entry i of each span is of one particle, in
+/// no order that a law may rely on. Particles that are held or stuck are among them: they take no part.
+struct LawParticles {
+  std::span<const std::uint64_t> ids;
+  std::span<const Vec3> positions;
+  std::span<const Vec3> velocities;
+  std::span<const double> diameters;
+  std::span<const double> densities;
+  std::span<const double> charges_per_mass;
+  std::span<const double> user_data;  ///< Simulation::user_data(), particle by particle
+  double time = 0.0;                  ///< s, of the stage
+};
+
+/// The fluid at the particles. Without a field it is at rest.
+struct LawSamples {
+  std::span<const Vec3> velocities;
+  /// They are those of the particle's simplex: 0 if the field is given in cells, and in slivers.
+  std::span<const VelocityGradient> gradients;
+  std::span<const Vec3> rates;  ///< du/dt at a fixed point, m / s^2
+};
+
+/// The arrays that a law fills in.
+struct LawResult {
+  std::span<Vec3> accelerations;  ///< a, m / s^2
+  std::span<double> rates;        ///< c, 1 / s, >= 0
+  std::span<Vec3> rotations;      ///< r, rad / s
+};
+
+/// A law of one's own. It gets the sums of gravity and ForceOptions::terms in the result, and changes them. Each entry may
+/// depend on the entries of the same particle alone: ranks have some particles each.
+using ParticleLaw = std::function<void(const LawParticles&, const LawSamples&, const LawResult&)>;
+
+}  // namespace dartcast

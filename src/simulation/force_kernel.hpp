@@ -1,0 +1,105 @@
+// The fluid at particles, the forces of ForceOptions, and the exact motion under them: a particle in each lane of a vector.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "base/instruction_set.hpp"
+#include "dartcast/forces.hpp"
+#include "dartcast/particle_state.hpp"
+#include "dartcast/response.hpp"
+#include "tracking/batch/particle_cache.hpp"
+
+namespace dartcast::detail {
+
+/// A field at points, as it is sampled. Arrays hold an entry for each vertex.
+struct SampledField {
+  const Vec3* now = nullptr;
+  const Vec3* before = nullptr;   ///< positions before the last move; `now` if nothing moves
+  const Vec3* values = nullptr;   ///< at the stage's time
+  const Vec3* earlier = nullptr;  ///< and `later`: values whose difference gives the rates
+  const Vec3* later = nullptr;
+  const Vec3* rest = nullptr;  ///< positions at rest; null in space's frame
+  bool planar = false;
+  bool moving = false;    ///< particles still have positions relative to `before`
+  bool carries = false;   ///< the mesh's velocity is part of the field's
+  double per_move = 0.0;  ///< 1 / s: the inverse of the time of the last move
+  double per_time = 0.0;  ///< 1 / s: the inverse of the time from `earlier` to `later`
+};
+
+/// Samples of a field at consecutive particles; all spans have the same size, or are empty where nothing is asked for.
+struct SamplesOfField {
+  std::span<Vec3> values;
+  std::span<VelocityGradient> gradients;
+  std::span<double> spreads;  ///< the square of the greatest difference of values from a simplex's first corner
+  std::span<Vec3> rates;
+  std::span<Vec3> mesh;  ///< the mesh's velocity
+};
+
+/// Particles of a block: consecutive, all spans of the same size.
+struct StageParticles {
+  std::span<const ParticleState> states;
+  std::span<const VertexNumbers> vertices;
+  std::span<const Vec3> ways;  ///< as seen from the mesh, to where rates are sampled; empty: at the particles
+};
+
+/// The forces that are the same for all particles.
+struct ForceTerms {
+  enum class Drag : std::uint8_t { none, stokes, schiller_naumann, putnam };
+  Drag drag = Drag::none;
+  bool buoyancy = false;
+  bool pressure_gradient = false;
+  bool virtual_mass = false;
+  bool saffman_mei = false;
+  bool lorentz = false;
+  Fluid fluid;
+  Vec3 gravity;
+  Vec3 electric_field;
+  Vec3 magnetic_field;
+};
+
+/// Samples a field at points. Bit k of sampled[i] is set if this was done for particle 4 i + k: it is left to the caller if
+/// the simplex is a sliver. `sampled`: a byte for each four particles, and for those that remain.
+void sample_field(const SampledField& field, const StageParticles& particles, const SamplesOfField& samples,
+                  std::span<std::uint8_t> sampled, InstructionSet set = best_instruction_set());
+
+/// Moves samples by these ways: along the gradient, but by no more than the spread.
+void shift_samples(const SamplesOfField& samples, std::span<const Vec3> ways,
+                   InstructionSet set = best_instruction_set());
+
+/// Fills in the result. `particles`: those of its spans that the terms need. The span of rotations may be empty without the
+/// Lorentz force.
+void apply_forces(const ForceTerms& terms, const LawParticles& particles, const LawSamples& samples,
+                  const LawResult& result, InstructionSet set = best_instruction_set());
+
+/// Moves particles for a time under a result that is held: exact but for rounding, and with rotations by Boris' scheme.
+/// `ends`: the velocities then.
+struct HeldMotion {
+  std::span<const Vec3> starts;
+  std::span<const Vec3> fluid;
+  LawResult result;
+  double duration = 0.0;
+  std::span<Vec3> ends;
+  std::span<Vec3> ways;
+};
+void move_held(const HeldMotion& motion, InstructionSet set = best_instruction_set());
+
+namespace portable {
+void sample_field(const SampledField& field, const StageParticles& particles, const SamplesOfField& samples,
+                  std::span<std::uint8_t> sampled);
+void shift_samples(const SamplesOfField& samples, std::span<const Vec3> ways);
+void apply_forces(const ForceTerms& terms, const LawParticles& particles, const LawSamples& samples,
+                  const LawResult& result);
+void move_held(const HeldMotion& motion);
+}  // namespace portable
+namespace avx2 {
+void sample_field(const SampledField& field, const StageParticles& particles, const SamplesOfField& samples,
+                  std::span<std::uint8_t> sampled);
+void shift_samples(const SamplesOfField& samples, std::span<const Vec3> ways);
+void apply_forces(const ForceTerms& terms, const LawParticles& particles, const LawSamples& samples,
+                  const LawResult& result);
+void move_held(const HeldMotion& motion);
+}  // namespace avx2
+
+}  // namespace dartcast::detail

@@ -1,0 +1,81 @@
+// The scenes of scenes/validation against closed forms and the roots of the laws: docs/validation.md.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <vector>
+
+#include "dartcast/scene_file.hpp"
+#include "dartcast/simulation.hpp"
+#include "support/expectations.hpp"
+
+namespace dartcast::validation_test {
+
+namespace fs = std::filesystem;
+using test::expect_near;
+
+// The simulation after all steps of the scene. `each`: is called after every step.
+template <class Each>
+void run(const char* name, Each&& each) {
+  const char* const scenes = std::getenv("DARTCAST_SCENES");
+  ASSERT_NE(scenes, nullptr);
+  const Scene scene = load_scene_files(read_scene(fs::path(scenes) / "validation" / name)).scene;
+  Simulation simulation(scene);
+  for (std::uint64_t step = 0; step < scene.motion.steps; ++step) {
+    simulation.step();
+    each(simulation);
+  }
+}
+
+// Putnam's law by bisection.
+double terminal_speed(double d) {
+  double low = 0.0;
+  double high = 100.0;
+  for (int i = 0; i < 200; ++i) {
+    const double v = 0.5 * (low + high);
+    const double re = v * d * 1.2 / 1.8e-5;
+    const double factor = re <= 1000.0 ? 1.0 + std::pow(re, 2.0 / 3.0) / 6.0 : 0.424 * re / 24.0;
+    (v * factor * 18.0 * 1.8e-5 / (1000.0 * d * d) < 9.81 * (1.0 - 1.2e-3) ? low : high) = v;
+  }
+  return low;
+}
+
+TEST(Validation, DropsFallAtTheirTerminalSpeed) {
+  run("terminal.toml", [](const Simulation& s) {
+    if (s.steps() < 400) return;
+    ASSERT_EQ(s.particles().size(), 6U);
+    for (std::size_t i = 0; i < 6; ++i) {
+      const double truth = terminal_speed(s.diameters()[i]);
+      EXPECT_NEAR(-s.velocities()[i].z, truth, 1e-4 * truth) << s.diameters()[i];
+    }
+  });
+}
+
+TEST(Validation, DropsStopAtTheDistanceOfStokesAndCunningham) {
+  run("stopping.toml", [](const Simulation& s) {
+    for (std::size_t i = 0; i < s.particles().size(); ++i) {
+      const double d = s.diameters()[i];
+      const double kn = 2.0 * 6.6e-8 / d;
+      const double tau = 1000.0 * d * d / (18.0 * 1.8e-5) * (1.0 + kn * (1.257 + 0.4 * std::exp(-1.1 / kn)));
+      const double t = 1e-3 * static_cast<double>(s.steps());
+      EXPECT_NEAR(s.particles()[i].position.x, 0.01 + 10.0 * tau * (1.0 - std::exp(-t / tau)), 1e-13) << d;
+    }
+  });
+}
+
+// In the frame of the drift E x B / B^2 a charge goes around a circle: its corners are on it, whatever the step.
+TEST(Validation, ChargesTurnAndDrift) {
+  run("gyration.toml", [](const Simulation& s) {
+    const std::vector<double> speeds = {0.5, -0.5, 0.0};  // along x, in that frame, at the start
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double t = 5e-3 * static_cast<double>(s.steps());
+      const double turn = 2.0 * s.charges_per_mass()[i];  // rad / s
+      const Vec3 centre = {0.2 + 0.5 * t, 0.5 - speeds[i] / turn, 0.0};
+      const Vec3& x = s.particles()[i].position;
+      EXPECT_NEAR(std::hypot(x.x - centre.x, x.y - centre.y), std::abs(speeds[i] / turn), 1e-12) << i << " " << t;
+    }
+  });
+}
+
+}  // namespace dartcast::validation_test
