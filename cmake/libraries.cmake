@@ -6,7 +6,7 @@ set(simulation_rooms dynamics spheres solids bodies catheter simulation)
 set(mpi_rooms distributed)
 set(io_rooms formats meshing scene report output)
 # Public headers; core has all others.
-set(simulation_headers dynamics spheres solids bodies catheter simulation plan deformation vector_field forces summaries events scene statistics)
+set(simulation_headers dynamics spheres solids bodies catheter simulation plan deformation vector_field forces events scene statistics)
 set(mpi_headers mpi_ranks)
 set(io_headers mesh_files scene_file report replay run trajectory statistics_files)
 

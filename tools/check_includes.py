@@ -44,7 +44,7 @@ PUBLIC = {
     "solids": "solids",
     "bodies": "bodies",
     "catheter": "catheter",
-    "simulation": "simulation plan deformation vector_field forces summaries events scene statistics",
+    "simulation": "simulation plan deformation vector_field forces events scene statistics",
     "formats": "mesh_files",
     "scene": "scene_file",
     "report": "report",
@@ -53,7 +53,7 @@ PUBLIC = {
 ROOM_OF = {f"dartcast/{name}.hpp": room for room, names in PUBLIC.items() for name in names.split()}
 EVERYTHING = "dartcast/dartcast.hpp"  # includes all others, but those of libraries that a build may be without
 OPTIONAL = {"dartcast/mpi_ranks.hpp"}
-MOST_HEADERS = 51
+MOST_HEADERS = 52
 MOST_LINES = 400
 
 # Third-party headers, and the rooms that may include them; never in public headers, for users need only our own.

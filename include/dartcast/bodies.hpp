@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "dartcast/audit.hpp"
@@ -337,6 +338,15 @@ class Bodies {
   friend struct BodiesMoves;
   struct Impl;
   std::unique_ptr<Impl> impl_;
+};
+
+/// The state of a body, and sums over its steps.
+struct BodySummary {
+  std::string name;
+  std::size_t particles = 0;
+  bool gone = false;  ///< it left at a wall; the fields below then say nothing
+  Vec3 centre;
+  BodyEnergy energy;
 };
 
 }  // namespace dartcast

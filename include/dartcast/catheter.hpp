@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "dartcast/audit.hpp"
@@ -200,5 +201,20 @@ struct CameraPath {
 /// also throws if the path would take more than `max_count` cameras. Cost: 4 us per camera, and once after a move a
 /// grid over the cells (Environment::locate()).
 CameraPath camera_path(Environment& environment, std::span<const Vec3> points, const CameraOptions& options = {});
+
+/// Over all steps so far.
+struct CatheterTotals {
+  double worst_segment = 0.0;  ///< largest relative error of a segment's length
+  double refused = 0.0;        ///< m of pushes and pulls that there was no way for
+};
+
+/// The state of a catheter, and sums over its steps.
+struct CatheterSummary {
+  std::string name;
+  double inserted = 0.0;         ///< m
+  double measured_length = 0.0;  ///< of the part in the lumen, m
+  CatheterTotals totals;
+  Vec3 tip;
+};
 
 }  // namespace dartcast

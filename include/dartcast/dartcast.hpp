@@ -45,7 +45,6 @@
 #include "dartcast/step.hpp"
 #include "dartcast/step_replay.hpp"
 #include "dartcast/storage.hpp"
-#include "dartcast/summaries.hpp"
 #include "dartcast/surface.hpp"
 #include "dartcast/threads.hpp"
 #include "dartcast/trajectory.hpp"

@@ -26,7 +26,6 @@
 #include "dartcast/response.hpp"
 #include "dartcast/solids.hpp"
 #include "dartcast/spheres.hpp"
-#include "dartcast/summaries.hpp"
 #include "dartcast/vector_field.hpp"
 
 namespace dartcast {

@@ -207,4 +207,14 @@ class SolidSet {
   std::unique_ptr<Impl> impl_;
 };
 
+/// The state of a solid of a scene, and sums over its steps.
+struct SolidSummary {
+  std::string name;
+  std::size_t vertices = 0;
+  Vec3 pivot;                  ///< now
+  std::uint64_t contacts = 0;  ///< that changed its motion
+  std::uint64_t stopped = 0;   ///< steps that it did not make in full
+  bool stuck = false;          ///< an edit left it no free place (SolidSet::stuck())
+};
+
 }  // namespace dartcast
