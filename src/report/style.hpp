@@ -9,13 +9,14 @@ namespace dartcast {
 /// colour-blind people (tests/report/colours_test.cpp); the first two are of M. Okabe and K. Ito. The viewer and the
 /// charts use the variables.
 inline constexpr std::string_view page_style = R"css(
-:root{--background:#fff;--panel:#f6f7f9;--text:#1b1f24;--muted:#5b6570;--line:#aab3bd;--faint:#e3e7eb;--accent:#0072b2;
+:root{--background:#fff;--panel:#f6f7f9;--text:#1b1f24;--muted:#5b6570;--line:#aab3bd;--faint:#e3e7eb;--accent:#0072b2;--wall:#cfd6de;--rim:#66788c;--axis-y:#2e7d32;
 --c0:#0072b2;--c1:#d55e00;--c2:#8c00ff;--c3:#c76c8f;--c4:#782900;--c5:#3f1da3;--c6:#454545;--c7:#a3895b}
 @media (prefers-color-scheme:dark){:root{--background:#14171b;--panel:#1d2127;--text:#e6e9ed;--muted:#9aa4af;--line:#5a6572;
---faint:#2b313a;--accent:#56b4e9;--c0:#56b4e9;--c1:#f08040;--c2:#41825a;--c3:#a930ff;--c4:#ffc700;--c5:#bbffc9;--c6:#a3b2b6;--c7:#f3ff8e}}
+--faint:#2b313a;--accent:#56b4e9;--wall:#a9b6c4;--rim:#c4dcf2;--axis-y:#7bc47f;
+--c0:#56b4e9;--c1:#f08040;--c2:#41825a;--c3:#a930ff;--c4:#ffc700;--c5:#bbffc9;--c6:#a3b2b6;--c7:#f3ff8e}}
 *{box-sizing:border-box}
 body{margin:0;background:var(--background);color:var(--text);font:15px/1.45 system-ui,sans-serif}
-header,main{max-width:1180px;margin:0 auto;padding:0 16px}
+header,main{max-width:1360px;margin:0 auto;padding:0 16px}
 header{padding-top:18px}
 h1{font-size:22px;margin:0}
 header p{margin:2px 0 12px;color:var(--muted)}

@@ -7,8 +7,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <tuple>
 #include <utility>
 
 #include "base/parallel.hpp"
@@ -27,6 +31,7 @@ using ViewerJson = nlohmann::ordered_json;
 
 constexpr std::size_t group_size = 16;          // frames
 constexpr std::size_t most_contacts = 250'000;  // beyond it, those of some slots are left out
+constexpr double usual_share = 0.98;            // of speeds that the colours distinguish: a few are far above all others
 
 // A number that names a patch: 0 is none. If a map has as many patches as it can, the last two share one.
 std::uint16_t patch_or_none(std::uint16_t patch) {
@@ -58,11 +63,13 @@ class Builder {
     describe_walls();
     describe_solids();
     describe_events();
+    json_["opening"] = opening_frame();
     parallel_for(data_.blocks.size(), 1, threads_, [this](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) data_.blocks[i] = base64(gzipped(data_.blocks[i]));
     });
     data_.description = json_.dump(-1, ' ', false, ViewerJson::error_handler_t::replace);
-    data_.picture = picture_of(frames_.front(), walls_.at(chosen_.frames.front().walls), file_.header().dimension);
+    const auto opening = json_["opening"].get<std::size_t>();
+    data_.picture = picture_of(frames_[opening], walls_.at(chosen_.frames[opening].walls), file_.header().dimension);
     return std::move(data_);
   }
 
@@ -213,6 +220,7 @@ class Builder {
     const bool has_radii = std::any_of(radii.begin(), radii.end(), [](float r) { return r > 0.0F; });
     ViewerJson speed = series(values_of(speed_bytes), slots_, first_differences);
     speed["max"] = fastest;
+    speed["usual"] = usual_speed();
     json_["particles"] = {{"count", slots_}, {"of", chosen_.all_ids}};
     ViewerJson& out = json_["particles"];
     out["id"] = block(ids);
@@ -223,6 +231,38 @@ class Builder {
     out["position"] = position_series(values_of(positions), slots_);
     out["speed"] = std::move(speed);
     out["kind"] = series(values_of(kinds), slots_, first_differences);
+  }
+
+  // The speed that few particles pass.
+  float usual_speed() const {
+    std::vector<float> all;
+    for (const RecordedFrame& frame : frames_) all.insert(all.end(), frame.speeds.begin(), frame.speeds.end());
+    if (all.empty()) return 0.0F;
+    const auto place = static_cast<std::ptrdiff_t>(usual_share * static_cast<double>(all.size() - 1));
+    std::nth_element(all.begin(), all.begin() + place, all.end());
+    return all[static_cast<std::size_t>(place)];
+  }
+
+  // The frame to open on: of those after the last change of the scene, the one with most different places and speeds of
+  // particles; without particles the last one.
+  std::size_t opening_frame() const {
+    double changed = -std::numeric_limits<double>::infinity();
+    for (const ViewerJson& e : json_["events"]) changed = std::max(changed, e["time"].get<double>());
+    const double usual = std::max<double>(usual_speed(), 1e-300);
+    std::size_t best = frames_.size() - 1;
+    std::size_t most = 0;
+    for (std::size_t k = 0; k < frames_.size(); ++k) {
+      const RecordedFrame& frame = frames_[k];
+      if (frame.time < changed) continue;
+      std::set<std::array<int, 4>> seen;
+      for (std::size_t i = 0; i < frame.ids.size(); ++i) {
+        const auto q = box_.quantised(frame.positions[i]);
+        const int speed = static_cast<int>(8.0 * std::min(frame.speeds[i] / usual, 1.0));
+        seen.insert({q[0] >> 11, q[1] >> 11, q[2] >> 11, speed});  // 32 places on each axis
+      }
+      if (seen.size() > most) std::tie(most, best) = std::pair(seen.size(), k);
+    }
+    return best;
   }
 
   // The contacts of the slots, by slot, then by time.
@@ -292,18 +332,18 @@ class Builder {
   struct Faces {
     std::vector<std::uint32_t> corners;  // triangles, or segments in the plane
     std::vector<std::uint16_t> patches;
-    std::vector<std::uint32_t> hits;
+    std::vector<std::uint32_t> polygons;  // the wall face of each
     std::vector<std::uint32_t> edges;
   };
 
   // Polygons as fans of triangles; their own edges for a drawing of wires, each once.
-  Faces faces_of(const RecordedWalls& walls, const std::vector<std::uint32_t>& hits) const {
+  Faces faces_of(const RecordedWalls& walls) const {
     Faces out;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
     const auto add = [&](std::size_t face, std::initializer_list<std::uint32_t> corners) {
       out.corners.insert(out.corners.end(), corners);
       out.patches.push_back(walls.patches[face]);
-      out.hits.push_back(hits.empty() ? 0 : hits[face]);
+      out.polygons.push_back(static_cast<std::uint32_t>(face));
     };
     for (std::size_t f = 0; f < walls.patches.size(); ++f) {
       const std::uint32_t* c = walls.corners.data() + walls.offsets[f];
@@ -321,31 +361,51 @@ class Builder {
     return out;
   }
 
+  // Hits of the wall faces up to each frame, in units that fit into 16 bits.
+  ViewerJson hits_series(std::size_t begin, std::size_t end, std::size_t faces) {
+    std::uint32_t most = 0;
+    for (std::size_t k = begin; k < end; ++k) {
+      for (const std::uint32_t h : frames_[k].hits) most = std::max(most, h);
+    }
+    const std::uint32_t per = most / 65536 + 1;
+    std::vector<std::uint16_t> values;
+    for (std::size_t k = begin; k < (most > 0 ? end : begin + 1); ++k) {
+      const std::vector<std::uint32_t>& hits = frames_[k].hits;
+      for (std::size_t f = 0; f < faces; ++f)
+        values.push_back(static_cast<std::uint16_t>(hits.empty() ? 0 : hits[f] / per));
+    }
+    ViewerJson out = series(values, faces, second_differences);
+    out["per"] = per;
+    out["max"] = most;
+    return out;
+  }
+
   // One entry for the frames that have the same walls.
   void describe_walls() {
     json_["walls"] = ViewerJson::array();
-    std::uint32_t most_hits = 0;
     for (std::size_t begin = 0; begin < frames_.size();) {
       std::size_t end = begin + 1;
       while (end < frames_.size() && chosen_.frames[end].walls == chosen_.frames[begin].walls) ++end;
       const RecordedWalls& walls = walls_.at(chosen_.frames[begin].walls);
-      const Faces faces = faces_of(walls, frames_[end - 1].hits);
-      for (const std::uint32_t h : faces.hits) most_hits = std::max(most_hits, h);
+      const Faces faces = faces_of(walls);
       bool moves = false;
       for (std::size_t k = begin + 1; k < end && !moves; ++k) moves = wall_points(k) != wall_points(begin);
       std::vector<RecordedPoint> points;
       for (std::size_t k = begin; k < (moves ? end : begin + 1); ++k)
         points.insert(points.end(), wall_points(k).begin(), wall_points(k).end());
-      ViewerJson entry = {{"first", begin}, {"points", walls.points.size()}, {"faces", faces.patches.size()}};
+      ViewerJson entry = {{"first", begin},
+                          {"points", walls.points.size()},
+                          {"polygons", walls.patches.size()},
+                          {"faces", faces.patches.size()}};
       entry["corners"] = block(faces.corners);
       entry["face_patch"] = block(faces.patches);
-      entry["face_hits"] = block(faces.hits);
+      entry["face"] = block(faces.polygons);
       entry["edges"] = faces.edges.empty() ? ViewerJson() : ViewerJson(block(faces.edges));
       entry["position"] = position_series(points, walls.points.size());
+      entry["hits"] = hits_series(begin, end, walls.patches.size());
       json_["walls"].push_back(std::move(entry));
       begin = end;
     }
-    json_["hits_max"] = most_hits;
   }
 
   void describe_solids() {

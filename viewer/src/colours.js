@@ -1,6 +1,13 @@
-// Colours: those of the page, and scales for numbers.
+// Colours: those of the page, and a scale for each quantity.
 
-const viridis = ['#440154', '#482878', '#3e4a89', '#31688e', '#26828e', '#1f9e89', '#35b779', '#6ece58', '#b5de2b', '#fde725'];
+const scales = {
+  speed: ['#0d0887', '#47039f', '#7301a8', '#9c179e', '#bd3786', '#d8576b', '#ed7953', '#fa9e3b', '#fdc926', '#f0f921'], // plasma
+  residence: ['#440154', '#482878', '#3e4a89', '#31688e', '#26828e', '#1f9e89', '#35b779', '#6ece58', '#b5de2b', '#fde725'], // viridis
+  id: ['#00224e', '#123570', '#3b496c', '#575d6d', '#707173', '#8a8678', '#a59c74', '#c3b369', '#e1cc55', '#fee838'], // cividis
+  // What was hit most stands out most: dark on light pages, bright on dark ones.
+  hitsOnLight: ['#fff1d6', '#fdc98a', '#f98b4b', '#e34a33', '#a8142b', '#5e0b2e'],
+  hitsOnDark: ['#2b1247', '#6a1b6e', '#b5325c', '#ef6a35', '#fcb519', '#fcffa4'],
+};
 
 /** "#rrggbb" as three numbers from 0 to 1. */
 export function parseColour(text) {
@@ -9,27 +16,37 @@ export function parseColour(text) {
   return hex.map((x) => parseInt(x, 16) / 255);
 }
 
-const stops = viridis.map(parseColour);
+const luminanceOf = (colour) => linear(colour).reduce((sum, c, k) => sum + c * [0.2126, 0.7152, 0.0722][k], 0);
+const stops = Object.fromEntries(Object.entries(scales).map(([name, list]) => [name, list.map(parseColour)]));
+const stopsOf = (name, page) => stops[name === 'hits' ? (page.isDark ? 'hitsOnDark' : 'hitsOnLight') : name];
 
-/** The colour of a share from 0 to 1. */
-export function scaleColour(share) {
-  const x = Math.max(0, Math.min(1, share)) * (stops.length - 1);
-  const i = Math.min(Math.floor(x), stops.length - 2);
-  return stops[i].map((c, k) => c + (stops[i + 1][k] - c) * (x - i));
+/** The colour of a share from 0 to 1 in the scale of a quantity. */
+export function scaleColour(name, share, page) {
+  const list = stopsOf(name, page);
+  const x = Math.max(0, Math.min(1, share)) * (list.length - 1);
+  const i = Math.min(Math.floor(x), list.length - 2);
+  return list[i].map((c, k) => c + (list[i + 1][k] - c) * (x - i));
 }
 
-export const scaleGradient = `linear-gradient(to right, ${viridis.join(', ')})`;
+export const scaleGradient = (name, page) => `linear-gradient(to right, ${stopsOf(name, page).map(css).join(', ')})`;
+
+export const css = (colour) => `rgb(${colour.map((c) => Math.round(255 * c)).join(' ')})`;
 
 /** The page's colours as they are now: they change with the scheme. */
 export function pageColours() {
   const style = getComputedStyle(document.documentElement);
   const get = (name) => parseColour(style.getPropertyValue(name) || '#888888');
+  const background = get('--panel');
   return {
-    background: get('--panel'),
+    background,
+    luminance: luminanceOf(background),
+    isDark: luminanceOf(background) < 0.2,
     text: get('--text'),
     muted: get('--muted'),
     line: get('--line'),
     accent: get('--accent'),
+    wall: get('--wall'),
+    rim: get('--rim'),
     categories: [6, 0, 1, 2, 3, 4, 5, 7].map((i) => get(`--c${i}`)),
   };
 }
@@ -49,7 +66,7 @@ export function patchColour(patch, page) {
 
 const toLinear = (c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
 
-/** Materials of three take linear colours; those of the page are not. */
+/** Colours in linear light. */
 export function linear(colour) {
   return colour.map(toLinear);
 }
@@ -60,4 +77,12 @@ export function shortNumber(x) {
   const size = Math.abs(x);
   if (size >= 1e6 || size < 1e-3) return x.toExponential(2);
   return size >= 1000 ? Math.round(x).toLocaleString('en') : Number(x.toPrecision(3)).toString();
+}
+
+/** A length for people: metres with a prefix. */
+export function shortLength(x) {
+  if (x === 0) return '0 m';
+  for (const [unit, size] of [['km', 1e3], ['m', 1], ['mm', 1e-3], ['µm', 1e-6], ['nm', 1e-9]])
+    if (Math.abs(x) >= 0.999 * size && Math.abs(x) < 1e6) return `${Number((x / size).toPrecision(3))} ${unit}`;
+  return `${x.toExponential(2)} m`;
 }

@@ -52,29 +52,35 @@ export class Series {
     const last = this.groups[this.groups.length - 1];
     this.frames = last ? last.first + last.count : 0;
     this.values = new (bits === 16 ? Uint16Array : Uint8Array)(this.frames * each);
-    this.decodedGroups = 0;
+    this.done = this.groups.map(() => false);
   }
 
-  /** The frames that can be read. */
-  get decoded() {
-    const group = this.groups[this.decodedGroups - 1];
-    return group ? group.first + group.count : 0;
+  place(f) {
+    return Math.max(0, this.groups.findLastIndex((g) => g.first <= f));
+  }
+
+  /** Whether a frame can be read, or the one that stands for it. */
+  has(f) {
+    return this.groups.length === 0 || this.done[this.place(f)];
   }
 
   get isWhole() {
-    return this.decodedGroups === this.groups.length;
+    return this.done.every((d) => d);
   }
 
-  async decodeNext() {
-    const group = this.groups[this.decodedGroups];
+  /** Decodes the group of a frame. Groups do not need one another. */
+  async decodeAt(f) {
+    const at = this.place(f);
+    if (this.groups.length === 0 || this.done[at]) return;
+    const group = this.groups[at];
     const bytes = await readBlock(group.block);
     (this.bits === 16 ? undoSecondDifferences : undoFirstDifferences)(bytes, this.values, group.first, group.count, this.each);
-    ++this.decodedGroups;
+    this.done[at] = true;
   }
 
   /** The values of a frame; those of the last one where there is none. */
   frame(f) {
-    const k = Math.max(0, Math.min(f, this.decoded - 1));
+    const k = Math.max(0, Math.min(f, this.frames - 1));
     return this.values.subarray(k * this.each, (k + 1) * this.each);
   }
 }
@@ -88,15 +94,18 @@ export class Box {
     this.radius = Math.max(Math.hypot(...this.size) / 2, 1e-30);
   }
 
-  /** Writes coordinates around the centre. */
-  toScene(values, out) {
-    const [sx, sy, sz] = this.size;
-    for (let i = 0; i < values.length; i += 3) {
-      out[i] = (values[i] / 65535 - 0.5) * sx;
-      out[i + 1] = (values[i + 1] / 65535 - 0.5) * sy;
-      out[i + 2] = (values[i + 2] / 65535 - 0.5) * sz;
+  /** Writes coordinates around the centre, a share `mixing` of the way from `values` to `next`. */
+  toScene(values, out, next = values, mixing = 0) {
+    for (let k = 0; k < 3; ++k) {
+      const size = this.size[k];
+      for (let i = k; i < values.length; i += 3) out[i] = ((values[i] + (next[i] - values[i]) * mixing) / 65535 - 0.5) * size;
     }
     return out;
+  }
+
+  /** The middle, in the run's own coordinates. */
+  get middle() {
+    return this.low.map((x, k) => x + this.size[k] / 2);
   }
 
   /** The position in the run's own coordinates. */

@@ -19,11 +19,25 @@ export function choice(label, entries, value, onChange) {
   return select;
 }
 
+/** A field for a number; the empty text is `undefined`. */
+export function numberField(label, value, onChange) {
+  const field = element('input', { type: 'number', step: 'any', 'aria-label': label, value });
+  field.addEventListener('change', () => onChange(field.value === '' ? undefined : Number(field.value)));
+  return field;
+}
+
+export function slider(label, { min, max, step, value }, onInput) {
+  const made = element('input', { type: 'range', min, max, step, 'aria-label': label });
+  made.value = value;
+  made.addEventListener('input', () => onInput(Number(made.value)));
+  return made;
+}
+
+export const button = (text, onclick, more = {}) => element('button', { type: 'button', onclick, ...more }, text);
+
 export function checkbox(label, value, onChange) {
   const box = element('input', { type: 'checkbox' });
   box.checked = value;
   box.addEventListener('change', () => onChange(box.checked));
   return element('label', {}, label, box);
 }
-
-export const css = (colour) => `rgb(${colour.map((c) => Math.round(255 * c)).join(' ')})`;

@@ -1,5 +1,5 @@
 // Bodies and catheters: skins, points, and tubes along a line.
-import { BufferAttribute, BufferGeometry, CatmullRomCurve3, DoubleSide, Group, Mesh, MeshLambertMaterial, Points, PointsMaterial, TubeGeometry, Vector3 } from 'three';
+import { BufferAttribute, BufferGeometry, CatmullRomCurve3, DoubleSide, Group, Mesh, MeshStandardMaterial, Points, PointsMaterial, TubeGeometry, Vector3 } from 'three';
 import { readNumbers, Series } from './decode.js';
 import { linear, pageColours } from './colours.js';
 
@@ -29,8 +29,8 @@ export class Solids {
     const geometry = new BufferGeometry();
     geometry.setAttribute('position', new BufferAttribute(new Float32Array(3 * solid.items), 3));
     if (solid.triangles) geometry.setIndex(new BufferAttribute(solid.triangles, 1));
-    const object = solid.triangles ? new Mesh(geometry, new MeshLambertMaterial({ side: DoubleSide, flatShading: true }))
-      : solid.kind === 'catheter' ? new Mesh(geometry, new MeshLambertMaterial({ side: DoubleSide }))
+    const object = solid.triangles ? new Mesh(geometry, new MeshStandardMaterial({ side: DoubleSide, flatShading: true, roughness: 0.55, metalness: 0.05 }))
+      : solid.kind === 'catheter' ? new Mesh(geometry, new MeshStandardMaterial({ side: DoubleSide, roughness: 0.35, metalness: 0.25 }))
         : new Points(geometry, new PointsMaterial({ size: Math.max(2 * solid.radius, this.box.radius / 250) }));
     object.frustumCulled = false;
     this.object.add(object);
@@ -47,13 +47,26 @@ export class Solids {
     return this.all.flatMap((s) => [...(s.shownPoints ?? [])]);
   }
 
-  show(f) {
+  has(f) {
+    return this.series.every((s) => s.has(f));
+  }
+
+  decodeAt(f) {
+    return Promise.all(this.series.map((s) => s.decodeAt(f)));
+  }
+
+  /** Shows a moment, a frame's number with a part of the way to the next one. */
+  show(time) {
+    const f = Math.floor(time);
     for (const solid of this.all) {
       solid.object ??= this.makeObject(solid);
       const { object } = solid;
       const count = solid.present[f] ?? 0;
       const values = solid.series.frame(f).subarray(0, 3 * count);
-      const points = this.box.toScene(values, new Float32Array(values.length));
+      // A solid that grows or shrinks stands still until the next frame.
+      const isSame = solid.present[f + 1] === count;
+      const next = isSame ? solid.series.frame(f + 1).subarray(0, 3 * count) : values;
+      const points = this.box.toScene(values, new Float32Array(values.length), next, time - f);
       solid.shownPoints = points;
       object.visible = count > 0;
       object.material.color.setRGB(...linear(this.colour(solid)));

@@ -1,7 +1,32 @@
-// The stage: canvas, camera and lights. It draws on demand.
-import { AmbientLight, Color, DirectionalLight, HemisphereLight, OrthographicCamera, PerspectiveCamera, Plane, Scene, Vector3, WebGLRenderer } from 'three';
+// The stage: canvas, camera, background, cutting plane. It draws on demand.
+import {
+  BackSide, BufferAttribute, BufferGeometry, DepthTexture, DirectionalLight, FrontSide, HemisphereLight, Mesh, MeshBasicMaterial, OrthographicCamera,
+  PerspectiveCamera, Plane, Scene, ShaderMaterial, UnsignedIntType, Vector2, Vector3, WebGLRenderer, WebGLRenderTarget,
+} from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
-import { linear, pageColours } from './colours.js';
+import { pageColours } from './colours.js';
+
+/** A whole screen behind the scene: a little lighter in the middle. */
+function makeBackdrop() {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
+  const material = new ShaderMaterial({
+    uniforms: { middle: { value: new Vector3() }, rim: { value: new Vector3() } },
+    vertexShader: 'varying vec2 at; void main() { at = position.xy; gl_Position = vec4(position.xy, 1.0, 1.0); }',
+    fragmentShader: 'uniform vec3 middle; uniform vec3 rim; varying vec2 at; void main() { gl_FragColor = vec4(mix(middle, rim, smoothstep(0.1, 1.5, length(at))), 1.0); }',
+    depthTest: false, depthWrite: false,
+  });
+  const backdrop = new Mesh(geometry, material);
+  backdrop.frustumCulled = false;
+  backdrop.renderOrder = -1;
+  return backdrop;
+}
+
+const directions = {
+  front: [[0, -1, 0], [0, 0, 1]], back: [[0, 1, 0], [0, 0, 1]], left: [[-1, 0, 0], [0, 0, 1]], right: [[1, 0, 0], [0, 0, 1]],
+  top: [[0, 0, 1], [0, 1, 0]], bottom: [[0, 0, -1], [0, 1, 0]],
+};
+export const presets = Object.keys(directions);
 
 export class Stage {
   /** Throws where there is no WebGL. */
@@ -10,37 +35,45 @@ export class Stage {
     this.dimension = dimension;
     this.canvas = document.createElement('canvas');
     this.canvas.tabIndex = 0;
-    this.canvas.setAttribute('aria-label', 'The scene. Drag to turn it, scroll to zoom, click a particle.');
-    const context = this.canvas.getContext('webgl2', { antialias: true });
+    this.canvas.setAttribute('role', 'application');
+    this.canvas.setAttribute('aria-label', 'The scene. Shift and arrow keys turn it, plus and minus zoom, N chooses the next particle.');
+    const context = this.canvas.getContext('webgl2', { antialias: true, powerPreference: 'high-performance' });
     if (!context) throw new Error('WebGL is missing');
     this.renderer = new WebGLRenderer({ canvas: this.canvas, context, antialias: true });
     this.scene = new Scene();
-    this.makeCamera();
+    this.backdrop = makeBackdrop();
+    const sun = new DirectionalLight(0xffffff, 2.2);
+    sun.position.set(1, -2, 3);
+    this.scene.add(this.backdrop, new HemisphereLight(0xffffff, 0x8a94a0, 1.9), sun);
     this.plane = new Plane(new Vector3(-1, 0, 0), 0);
     this.drawn = 0;
-    this.observers = [];
+    this.observers = []; // called before a frame is drawn
+    this.after = []; // called after one is drawn
     this.framed = [];
     this.direction = null; // that frame() looks from; null: it chooses one
+    this.up = null; // that frame() has; null: it chooses one
+    this.makeCamera();
     this.colour();
   }
 
   makeCamera() {
     const r = this.box.radius;
-    if (this.dimension === 2) {
-      this.camera = new OrthographicCamera(-r, r, r, -r, r / 100, 10 * r);
-    } else {
-      this.camera = new PerspectiveCamera(32, 1, r / 100, r * 100);
-      this.camera.up.set(0, 0, 1);
-      const sky = new HemisphereLight(0xffffff, 0x8a94a0, 1.9);
-      sky.position.set(0, 0, 1);
-      const sun = new DirectionalLight(0xffffff, 1.5);
-      sun.position.set(1, -2, 3);
-      this.scene.add(sky, sun, new AmbientLight(0xffffff, 0.3));
-    }
+    this.camera = this.dimension === 2 ? new OrthographicCamera(-r, r, r, -r, r / 100, 10 * r) : new PerspectiveCamera(32, 1, r / 100, r * 100);
+    this.setUp(this.dimension === 2 ? [0, 1, 0] : [0, 0, 1]);
+  }
+
+  /** Controls take their upward direction once. */
+  setUp(up) {
+    this.camera.up.set(...up);
+    const target = this.controls?.target;
+    this.controls?.dispose();
     this.controls = new OrbitControls(this.camera, this.canvas);
+    if (target) this.controls.target.copy(target);
     this.controls.enableRotate = this.dimension === 3;
     this.controls.screenSpacePanning = true;
     this.controls.addEventListener('change', () => this.draw());
+    // A vertical swipe scrolls the page; all others are for the scene.
+    this.canvas.style.touchAction = 'pan-y';
   }
 
   /** Turns the camera so that what is visible fills the stage. `points`: its coordinates, one after another. */
@@ -53,23 +86,42 @@ export class Stage {
       high[i % 3] = Math.max(high[i % 3], points[i]);
     }
     const centre = points.length > 0 ? new Vector3(...low.map((x, k) => (x + high[k]) / 2)) : new Vector3();
-    const [sx, sy, sz] = points.length > 0 ? high.map((x, k) => x - low[k]) : this.box.size;
-    this.sizes = [sx, sy];
-    this.controls.target.copy(centre);
+    const size = points.length > 0 ? high.map((x, k) => x - low[k]) : this.box.size;
+    this.sizes = size.slice(0, 2);
+    this.resize();
     if (this.dimension === 2) {
       this.camera.position.set(centre.x, centre.y, 5 * this.box.radius);
       this.camera.zoom = 1;
     } else {
-      // The viewer looks along the shorter horizontal side, from above a little; from above where the scene is flat.
-      const direction = this.direction ? new Vector3(...this.direction) : sy <= sx ? new Vector3(0.35, -1, 0.3) : new Vector3(1, -0.35, 0.3);
-      if (!this.direction && sz < 0.25 * Math.min(sx, sy)) direction.z = 1.2;
-      this.resize();
-      const distance = this.distanceFor(direction.normalize(), centre, points);
-      this.camera.position.copy(centre).addScaledVector(direction, distance);
+      const { direction, up } = this.lookFrom(size);
+      this.setUp(up);
+      this.camera.position.copy(centre).addScaledVector(direction, this.distanceFor(direction, centre, points));
     }
+    this.controls.target.copy(centre);
     this.resize();
     this.controls.update();
+    this.framedHeight = this.heightAtTarget;
     this.draw();
+  }
+
+  /** Along the shorter horizontal side, from above a little; from above where the scene is flat; a long scene lies along the stage. */
+  lookFrom([sx, sy, sz]) {
+    const direction = this.direction ? new Vector3(...this.direction) : sy <= sx ? new Vector3(0.35, -1, 0.3) : new Vector3(1, -0.35, 0.3);
+    const up = this.up ? [...this.up] : [0, 0, 1];
+    const isWide = this.camera.aspect > 1.2;
+    if (!this.direction && sz < 0.25 * Math.min(sx, sy)) direction.z = 1.2;
+    else if (!this.direction && !this.up && isWide && sz > 1.3 * Math.max(sx, sy)) {
+      direction.set(...(sy <= sx ? [-0.3, -1, -0.15] : [-1, -0.3, -0.15]));
+      up.splice(0, 3, ...(sy <= sx ? [-1, 0, 0] : [0, -1, 0]));
+    }
+    return { direction: direction.normalize(), up };
+  }
+
+  look(preset) {
+    [this.direction, this.up] = directions[preset] ?? [null, null];
+    // Nearly upright: a camera that looks along its upward direction cannot turn.
+    this.frame();
+    [this.direction, this.up] = [null, null];
   }
 
   /** From where all points are in view. */
@@ -84,7 +136,31 @@ export class Stage {
       p.fromArray(points, i).sub(centre);
       distance = Math.max(distance, p.dot(direction) + Math.max(Math.abs(p.dot(right)) / across, Math.abs(p.dot(top)) / tan));
     }
-    return 1.08 * distance;
+    return 1.06 * distance;
+  }
+
+  /** Turns around the target by angles, or moves nearer by a factor. */
+  turn(across, upwards, nearer = 1) {
+    const from = this.camera.position.clone().sub(this.controls.target);
+    if (this.dimension === 2) {
+      this.camera.zoom *= nearer;
+      this.camera.updateProjectionMatrix();
+    } else {
+      const up = this.camera.up.clone().normalize();
+      const polar = from.angleTo(up);
+      from.applyAxisAngle(up, across);
+      const right = new Vector3().crossVectors(up, from).normalize();
+      from.applyAxisAngle(right, Math.max(0.02, Math.min(Math.PI - 0.02, polar - upwards)) - polar);
+      this.camera.position.copy(this.controls.target).addScaledVector(from, 1 / nearer);
+    }
+    this.controls.update();
+    this.draw();
+  }
+
+  /** What the stage shows of the plane through the target, from bottom to top. */
+  get heightAtTarget() {
+    if (this.dimension === 2) return (this.camera.top - this.camera.bottom) / this.camera.zoom;
+    return 2 * this.camera.position.distanceTo(this.controls.target) * Math.tan((this.camera.fov * Math.PI) / 360);
   }
 
   resize() {
@@ -105,7 +181,12 @@ export class Stage {
   }
 
   colour() {
-    this.scene.background = new Color().setRGB(...linear(pageColours().background));
+    const { background, isDark } = pageColours();
+    this.page = pageColours();
+    const { middle, rim } = this.backdrop.material.uniforms;
+    const lighter = isDark ? 0.018 : 0.012;
+    middle.value.set(...background.map((c) => Math.min(1, c + lighter)));
+    rim.value.set(...background.map((c) => c - lighter));
   }
 
   /** Cuts away what lies beyond a share of the box along a direction; null: nothing. */
@@ -123,6 +204,31 @@ export class Stage {
     return this.camera.position.clone().sub(this.controls.target).normalize();
   }
 
+  /**
+   * The depth of opaque walls, alone: a particle behind one is not drawn at all, so that no part of its disc sticks out.
+   * Outer sides count as a little nearer than they are and inner sides as farther, so that particles on a wall are
+   * seen from inside alone.
+   */
+  depthOf(mesh) {
+    if (!mesh || mesh.geometry.index.count === 0 || !mesh.visible) return null;
+    const size = this.renderer.getDrawingBufferSize(new Vector2());
+    if (!this.depth) {
+      this.depth = new WebGLRenderTarget(size.x, size.y, { depthTexture: new DepthTexture(size.x, size.y, UnsignedIntType) });
+      const sided = (side, offset) => new MeshBasicMaterial({ side, colorWrite: false, polygonOffset: true, polygonOffsetFactor: offset, polygonOffsetUnits: 4 * offset });
+      this.depthScene = new Scene();
+      this.depthMeshes = [new Mesh(mesh.geometry, sided(FrontSide, -1)), new Mesh(mesh.geometry, sided(BackSide, 1))];
+      for (const m of this.depthMeshes) m.frustumCulled = false;
+      this.depthScene.add(...this.depthMeshes);
+    }
+    for (const m of this.depthMeshes) m.geometry = mesh.geometry;
+    this.depth.setSize(size.x, size.y);
+    this.renderer.setRenderTarget(this.depth);
+    this.renderer.clear();
+    this.renderer.render(this.depthScene, this.camera);
+    this.renderer.setRenderTarget(null);
+    return this.depth.depthTexture;
+  }
+
   /** Draws at the next occasion of the screen, once for all that ask. */
   draw() {
     this.asked ??= requestAnimationFrame(() => this.drawNow());
@@ -131,8 +237,10 @@ export class Stage {
   drawNow() {
     if (this.asked) cancelAnimationFrame(this.asked);
     this.asked = undefined;
+    this.camera.updateMatrixWorld();
     for (const observer of this.observers) observer();
     this.renderer.render(this.scene, this.camera);
     ++this.drawn;
+    for (const observer of this.after) observer();
   }
 }
