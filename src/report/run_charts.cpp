@@ -1,4 +1,4 @@
-// Charts and tables of a run.
+// Charts of a run.
 #include "report/run_charts.hpp"
 
 #include <fmt/format.h>
@@ -8,33 +8,19 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <utility>
 #include <vector>
 
 #include "dartcast/error.hpp"
 #include "report/chart.hpp"
+#include "report/summary_file.hpp"
 
 namespace dartcast {
 
 namespace {
 
 namespace fs = std::filesystem;
-using RunJson = nlohmann::ordered_json;
-
-std::string content_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-RunJson summary_of(const fs::path& folder) {
-  const std::string text = content_of(folder / "summary.json");
-  RunJson json = RunJson::parse(text, nullptr, false);
-  return json.is_object() ? json : RunJson::object();
-}
-
 // stats.csv by columns.
 class Steps {
  public:
@@ -162,35 +148,44 @@ std::vector<Bar> bars_of(const RunJson& object, const char* unit, bool patches =
   return bars;
 }
 
-std::string shown(const RunJson& value) {
-  if (value.is_string()) return value.get<std::string>();
-  if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
-  return value.dump(-1, ' ', false, RunJson::error_handler_t::replace);
-}
-
-// Rows of an object; objects in it are headed by their name. Long lists stay in the file.
-void add_rows(std::string& out, const RunJson& object, const std::string& path, std::size_t depth) {
-  for (const auto& [name, value] : object.items()) {
-    const std::string key = path.empty() ? name : fmt::format("{} / {}", path, name);
-    if (value.is_object() && depth < 4) {
-      add_rows(out, value, key, depth + 1);
-    } else if (!value.is_array() || value.size() <= 3) {
-      out += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", html(key), html(shown(value)));
-    }
-  }
-}
-
 }  // namespace
 
 std::string scene_name(const fs::path& folder) {
-  const RunJson name = summary_of(folder).value("scene", RunJson());
+  const RunJson name = run_summary(folder).value("scene", RunJson());
   if (name.is_string() && !name.get<std::string>().empty()) return name.get<std::string>();
   const fs::path whole = fs::absolute(folder).lexically_normal();
   return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
 }
 
 std::string run_charts(const fs::path& folder) {
-  const RunJson summary = summary_of(folder);
+  const RunJson summary = run_summary(folder);
+  const Steps steps(folder / "stats.csv");
+  const std::vector<double> time = steps["time"];
+  std::string out;
+  out += over_time("Particles", "particles", time,
+                   {{"alive", steps["alive"]},
+                    {"injected", summed(steps["injected"])},
+                    {"escaped", summed(steps["escaped"])},
+                    {"absorbed", summed(steps["absorbed"])},
+                    {"held", steps["held"]}});
+  out += over_time("Contacts", "contacts in a step", time, {{"contacts", steps["contacts"]}});
+  out += bar_chart({.title = "Contacts by patch"},
+                   bars_of(summary.value("/contacts/by_patch"_json_pointer, RunJson()), "", true));
+  const auto of_solids = [&](const char* table, const char* column) {
+    return contacts_of_solids(folder / table, time.size(), column);
+  };
+  out += over_time("Contacts of bodies, catheters and solids", "contacts at the end of a step", time,
+                   {{"bodies", of_solids("bodies.csv", "contacts")},
+                    {"catheters", of_solids("catheters.csv", "at_walls")},
+                    {"solids", of_solids("solids.csv", "contacts")}});
+  const RunJson unit = summary.value("energy_unit", RunJson());
+  out += over_time("Energy", unit.is_string() ? unit.get<std::string>() : "", time,
+                   {{"kinetic", steps["kinetic_energy"]}, {"potential", steps["potential_energy"]}});
+  return out;
+}
+
+std::string method_charts(const fs::path& folder) {
+  const RunJson summary = run_summary(folder);
   const Steps steps(folder / "stats.csv");
   const std::vector<double> time = steps["time"];
   const std::vector<double> alive = steps["alive"];
@@ -201,40 +196,7 @@ std::string run_charts(const fs::path& folder) {
   out += over_time("Forecasts kept", "% of particles", time,
                    {{"kept", ratio(steps["forecast_kept"], alive, 100.0)},
                     {"updated by deformation", ratio(steps["updated_by_deformation"], alive, 100.0)}});
-  out += over_time("Contacts", "contacts in a step", time, {{"contacts", steps["contacts"]}});
-  const auto of_solids = [&](const char* table, const char* column) {
-    return contacts_of_solids(folder / table, time.size(), column);
-  };
-  out += over_time("Contacts of bodies, catheters and solids", "contacts at the end of a step", time,
-                   {{"bodies", of_solids("bodies.csv", "contacts")},
-                    {"catheters", of_solids("catheters.csv", "at_walls")},
-                    {"solids", of_solids("solids.csv", "contacts")}});
-  out += bar_chart({.title = "Contacts by patch"},
-                   bars_of(summary.value("/contacts/by_patch"_json_pointer, RunJson()), "", true));
-  out += over_time("Particles", "particles", time,
-                   {{"alive", alive},
-                    {"injected", summed(steps["injected"])},
-                    {"escaped", summed(steps["escaped"])},
-                    {"absorbed", summed(steps["absorbed"])},
-                    {"held", steps["held"]}});
-  const RunJson unit = summary.value("energy_unit", RunJson());
-  out += over_time("Energy", unit.is_string() ? unit.get<std::string>() : "", time,
-                   {{"kinetic", steps["kinetic_energy"]}, {"potential", steps["potential_energy"]}});
   out += bar_chart({.title = "Seconds of the run, by part"}, bars_of(summary.value("seconds", RunJson()), " s"));
-  return out;
-}
-
-std::string run_tables(const fs::path& folder) {
-  std::string out;
-  const RunJson summary = summary_of(folder);
-  if (!summary.empty()) {
-    std::string rows;
-    add_rows(rows, summary, "", 0);
-    out +=
-        "<details open><summary>Summary</summary><div class=\"wide\"><table>\n" + rows + "</table></div></details>\n";
-  }
-  const std::string scene = content_of(folder / "scene.toml");
-  if (!scene.empty()) out += "<details><summary>Scene</summary><pre>" + html(scene) + "</pre></details>\n";
   return out;
 }
 

@@ -19,7 +19,7 @@ body{margin:0;background:var(--background);color:var(--text);font:15px/1.45 syst
 header,main{max-width:1360px;margin:0 auto;padding:0 16px}
 header{padding-top:18px}
 h1{font-size:22px;margin:0}
-header p{margin:2px 0 12px;color:var(--muted)}
+header p{margin:4px 0 12px;color:var(--muted);max-width:100ch}
 #view{position:relative;border:1px solid var(--faint);border-radius:8px;overflow:hidden;background:var(--panel)}
 #view .fallback{margin:0;padding:10px 14px;color:var(--muted)}
 #view .picture{display:block;width:100%;max-height:520px}
@@ -29,6 +29,11 @@ header p{margin:2px 0 12px;color:var(--muted)}
 .chart .title{font-weight:600;font-size:13px}
 .chart .grid{stroke:var(--faint)}
 .chart .axis{stroke:var(--line)}
+.tables{display:flex;flex-wrap:wrap;gap:14px;margin:18px 0}
+.table{border:1px solid var(--faint);border-radius:8px;background:var(--panel);padding:8px 14px;flex:1 1 300px;min-width:0}
+.table h3{font-size:13px;margin:2px 0}
+.table td,.table th{white-space:nowrap}
+code{background:var(--faint);border-radius:4px;padding:1px 5px;overflow-wrap:anywhere}
 .notes{color:var(--muted);margin:12px 0}
 details{margin:12px 0;border:1px solid var(--faint);border-radius:8px;padding:8px 14px;background:var(--panel)}
 summary{cursor:pointer;font-weight:600}

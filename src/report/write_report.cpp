@@ -13,6 +13,7 @@
 #include "formats/file_write.hpp"
 #include "report/grouped.hpp"
 #include "report/run_charts.hpp"
+#include "report/run_results.hpp"
 #include "report/viewer_page.hpp"
 
 namespace dartcast {
@@ -32,10 +33,17 @@ void add_notes(ReportSummary& taken) {
                                       grouped(taken.frames_recorded)));
 }
 
-std::string page_of(const ViewerData& data, const std::string& scene, const std::string& charts) {
-  const std::string particles = data.taken.particles > 0 ? grouped(data.taken.particles) + " particles, " : "";
-  return viewer_page({scene, fmt::format("A run of dartcast: {}{} frames", particles, data.taken.frames), charts},
-                     data);
+std::string grid_of(const std::string& charts, const char* label) {
+  return charts.empty() ? charts
+                        : fmt::format("<section class=\"charts\" aria-label=\"{}\">\n{}</section>\n", label, charts);
+}
+
+// Results first; how they were computed is folded away.
+std::string body_of(const fs::path& folder) {
+  const std::string method = grid_of(method_charts(folder), "Charts of the method");
+  std::string body = run_results(folder) + grid_of(run_charts(folder), "Charts");
+  if (!method.empty()) body += "<details><summary>Method</summary>\n" + method + "</details>\n";
+  return body + run_origin(folder);
 }
 
 }  // namespace
@@ -48,8 +56,7 @@ ReportSummary write_report(const fs::path& run_folder, const ReportOptions& opti
   if (options.frames > most_frames)
     throw InvalidArgument(fmt::format("report: {} frames; give at most {}", options.frames, most_frames));
   const RecordedFile file(run_folder / "report.bin");
-  const std::string charts = "<section class=\"charts\" aria-label=\"Charts\">\n" + run_charts(run_folder) +
-                             "</section>\n" + run_tables(run_folder);
+  const ViewerPage around = {scene_name(run_folder), run_caption(run_folder), body_of(run_folder)};
   ReportOptions now = options;
   for (bool reduced = false;; reduced = true) {
     ViewerData data = viewer_data(file, now);
@@ -58,7 +65,7 @@ ReportSummary write_report(const fs::path& run_folder, const ReportOptions& opti
                                              grouped(options.particles), grouped(options.frames),
                                              static_cast<double>(options.bytes) / 1e6));
     add_notes(data.taken);
-    const std::string page = page_of(data, scene_name(run_folder), charts);
+    const std::string page = viewer_page(around, data);
     const bool can_shrink = data.taken.particles > 500 || data.taken.frames > 2;
     if (page.size() > options.bytes && can_shrink) {
       std::uint64_t& which = data.taken.particles > 500 ? data.taken.particles : data.taken.frames;

@@ -1,12 +1,15 @@
 // Colours: those of the page, and a scale for each quantity.
 
+// Each on light and on dark pages: the dark ends of scales are no sight on a dark page.
 const scales = {
-  speed: ['#0d0887', '#47039f', '#7301a8', '#9c179e', '#bd3786', '#d8576b', '#ed7953', '#fa9e3b', '#fdc926', '#f0f921'], // plasma
-  residence: ['#440154', '#482878', '#3e4a89', '#31688e', '#26828e', '#1f9e89', '#35b779', '#6ece58', '#b5de2b', '#fde725'], // viridis
-  id: ['#00224e', '#123570', '#3b496c', '#575d6d', '#707173', '#8a8678', '#a59c74', '#c3b369', '#e1cc55', '#fee838'], // cividis
-  // What was hit most stands out most: dark on light pages, bright on dark ones.
-  hitsOnLight: ['#fff1d6', '#fdc98a', '#f98b4b', '#e34a33', '#a8142b', '#5e0b2e'],
-  hitsOnDark: ['#2b1247', '#6a1b6e', '#b5325c', '#ef6a35', '#fcb519', '#fcffa4'],
+  speed: [['#0d0887', '#47039f', '#7301a8', '#9c179e', '#bd3786', '#d8576b', '#ed7953', '#fa9e3b', '#fdc926', '#f0f921'], // plasma
+    ['#6650f0', '#9146ea', '#b848cc', '#d8579d', '#ec6d6b', '#f98d43', '#fdb62f', '#f4ee3a']],
+  residence: [['#440154', '#482878', '#3e4a89', '#31688e', '#26828e', '#1f9e89', '#35b779', '#6ece58', '#b5de2b', '#fde725'], // viridis
+    ['#7160d8', '#4f82d8', '#3a9fc4', '#2cb5a5', '#45c989', '#7fda62', '#c2e344', '#fde725']],
+  id: [['#00224e', '#123570', '#3b496c', '#575d6d', '#707173', '#8a8678', '#a59c74', '#c3b369', '#e1cc55', '#fee838'], // cividis
+    ['#5f7fc4', '#8291b4', '#9fa1a2', '#b7af8d', '#cec071', '#e5d256', '#fee838']],
+  // What was hit most stands out most.
+  hits: [['#fff1d6', '#fdc98a', '#f98b4b', '#e34a33', '#a8142b', '#5e0b2e'], ['#3b1a55', '#7a2272', '#c03a60', '#f06c36', '#fcb519', '#fcffa4']],
 };
 
 /** "#rrggbb" as three numbers from 0 to 1. */
@@ -17,8 +20,7 @@ export function parseColour(text) {
 }
 
 const luminanceOf = (colour) => linear(colour).reduce((sum, c, k) => sum + c * [0.2126, 0.7152, 0.0722][k], 0);
-const stops = Object.fromEntries(Object.entries(scales).map(([name, list]) => [name, list.map(parseColour)]));
-const stopsOf = (name, page) => stops[name === 'hits' ? (page.isDark ? 'hitsOnDark' : 'hitsOnLight') : name];
+const stopsOf = (name, page) => scales[name][page.isDark ? 1 : 0].map(parseColour);
 
 /** The colour of a share from 0 to 1 in the scale of a quantity. */
 export function scaleColour(name, share, page) {

@@ -74,7 +74,9 @@ void main() {
   if (cover <= 0.02) discard;
   vec3 n = vec3(p.x, -p.y, sqrt(max(0.0, 1.0 - d * d)));
   float lit = dot(n, vec3(-0.37, 0.56, 0.74));
-  vec3 ball = colour * (0.72 + 0.38 * lit) + 0.22 * pow(max(lit, 0.0), 14.0);
+  float shine = max(lit, 0.0);
+  shine *= shine; shine *= shine; shine *= shine; // to the power of 8
+  vec3 ball = colour * (0.70 + 0.38 * lit) + 0.20 * shine * shine;
   float edge = smoothstep(1.0 - (ringPixels + 0.9) * pixel, 1.0 - ringPixels * pixel, d);
   gl_FragColor = vec4(mix(ball, ring, edge), cover);
 }`;
@@ -331,8 +333,9 @@ export class ParticleCloud {
     const u = this.uniforms;
     u.orthographic.value = camera.isOrthographicCamera ? 1 : 0;
     u.perUnit.value = (canvas.height * camera.projectionMatrix.elements[5]) / 2;
-    // So large that ten thousand are a cloud and a hundred are beads.
-    const wanted = Math.max(4.2, Math.min(11, 110 / Math.sqrt(Math.max(this.count, 1)) + 4)) * this.scale;
+    // So large that ten thousand are a cloud and a hundred are beads; smaller on small screens.
+    const room = Math.sqrt((canvas.clientWidth * canvas.clientHeight) / 7e5);
+    const wanted = Math.max(4.2, Math.min(11, 110 / Math.sqrt(Math.max(this.count, 1)) + 4)) * Math.max(0.55, Math.min(1.4, room)) * this.scale;
     u.diameter.value = (wanted * (stage.framedHeight || stage.heightAtTarget)) / Math.max(canvas.clientHeight, 1);
     u.pixels.value.set(2.5 * pixelRatio * Math.min(1, this.scale), 64 * pixelRatio);
     u.ringPixels.value = 0.8 * pixelRatio;

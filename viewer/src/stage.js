@@ -13,7 +13,7 @@ function makeBackdrop() {
   const material = new ShaderMaterial({
     uniforms: { middle: { value: new Vector3() }, rim: { value: new Vector3() } },
     vertexShader: 'varying vec2 at; void main() { at = position.xy; gl_Position = vec4(position.xy, 1.0, 1.0); }',
-    fragmentShader: 'uniform vec3 middle; uniform vec3 rim; varying vec2 at; void main() { gl_FragColor = vec4(mix(middle, rim, smoothstep(0.1, 1.5, length(at))), 1.0); }',
+    fragmentShader: 'uniform vec3 middle; uniform vec3 rim; varying vec2 at; void main() { gl_FragColor = vec4(mix(middle, rim, 0.5 * dot(at, at)), 1.0); }',
     depthTest: false, depthWrite: false,
   });
   const backdrop = new Mesh(geometry, material);

@@ -8,48 +8,42 @@ import { Shape, sortTriangles } from './shape.js';
 export const wallModes = ['transparent', 'shown', 'hidden'];
 export const hitModes = [['', 'patch'], ['area', 'hits per area'], ['count', 'hits of a face']];
 
+// Light from above, as the viewer sees it, from the sky around, and from a lamp beside the viewer. Walls have two sides, so
+// that the side is a factor from -1 to 1, which passes through 0 at the rim.
 const vertexShader = `
 #include <clipping_planes_pars_vertex>
 attribute vec3 tint; attribute vec4 heat;
-varying vec3 colour; varying vec4 hot; varying vec3 n; varying vec3 toEye;
+uniform bool byHits;
+varying vec4 lit; varying vec3 n; varying vec3 eye;
 void main() {
   vec4 mvPosition = modelViewMatrix * vec4(position, 1.0);
   #include <clipping_planes_vertex>
   gl_Position = projectionMatrix * mvPosition;
-  colour = tint;
-  hot = heat;
   n = normalMatrix * normal;
-  toEye = -mvPosition.xyz;
+  eye = normalize(-mvPosition.xyz);
+  float side = clamp(8.0 * dot(n, eye), -1.0, 1.0);
+  float lamp = max(side * dot(n, vec3(-0.413, 0.688, 0.597)), 0.0);
+  vec3 light = mix(vec3(0.60, 0.63, 0.70), vec3(0.86, 0.87, 0.88), 0.5 + 0.5 * side * n.y) + 0.34 * lamp;
+  lit = byHits ? vec4(mix(tint, heat.rgb, heat.a) * light, heat.a) : vec4(tint * light, 0.0);
 }`;
-// Light from above, as the viewer sees it, from the sky around, and from a lamp beside the viewer. Where a transparent wall
-// is seen at a grazing angle it is denser (Fresnel), so that its shape is seen by its rim.
+// Where a transparent wall is seen at a grazing angle it is denser (Fresnel), so that its shape is seen by its rim.
 const fragmentShader = `
 #include <clipping_planes_pars_fragment>
-varying vec3 colour; varying vec4 hot; varying vec3 n; varying vec3 toEye;
-uniform bool isGlass; uniform bool byHits; uniform vec3 rim; uniform bool isDark; uniform float seeThrough;
+varying vec4 lit; varying vec3 n; varying vec3 eye;
+uniform bool isGlass; uniform vec3 rim; uniform bool isDark;
 void main() {
   #include <clipping_planes_fragment>
-  vec3 eye = normalize(toEye);
-  vec3 out_ = normalize(n);
-  if (dot(out_, eye) < 0.0) out_ = -out_;
-  float facing = clamp(dot(out_, eye), 0.0, 1.0);
-  vec3 lamp = normalize(vec3(-0.45, 0.75, 0.65));
-  float lit = max(dot(out_, lamp), 0.0);
-  float sky = 0.5 + 0.5 * out_.y;
-  float shine = pow(max(dot(reflect(-lamp, out_), eye), 0.0), 48.0);
-  vec3 base = byHits ? mix(colour, hot.rgb, hot.a) : colour;
-  vec3 shaded = base * mix(vec3(0.60, 0.63, 0.70), vec3(0.86, 0.87, 0.88), sky) + base * 0.34 * lit;
-  float grazing = pow(1.0 - facing, 2.6);
+  vec3 m = normalize(n);
+  float side = dot(m, eye);
+  float away = 1.0 - min(abs(side), 1.0);
+  float grazing = away * away * mix(away, 1.0, 0.3);
+  float shine = max(sign(side) * dot(m, vec3(-0.231, 0.385, 0.893)), 0.0); // halfway between the lamp and the viewer
+  shine *= shine; shine *= shine; shine *= shine; shine *= shine; shine *= shine; // to the power of 32
   if (isGlass) {
-    float dense = byHits ? hot.a : 0.0;
-    float alpha = seeThrough * (0.09 + 0.62 * grazing);
-    alpha = mix(alpha, 0.92, dense);
-    vec3 glass = mix(shaded, rim, (1.0 - dense) * clamp(1.25 * grazing, 0.0, 1.0));
-    glass += shine * (isDark ? 0.5 : 0.6) * (1.0 - dense * 0.6);
-    alpha = clamp(alpha + 0.35 * shine, 0.0, 1.0);
-    gl_FragColor = vec4(min(glass, 1.0), alpha);
+    vec3 glass = mix(lit.rgb, rim, (1.0 - lit.a) * min(1.3 * grazing, 1.0));
+    gl_FragColor = vec4(min(glass + 0.55 * shine, 1.0), min(mix(0.09 + 0.75 * grazing, 0.92, lit.a) + 0.4 * shine, 1.0));
   } else {
-    gl_FragColor = vec4(min(shaded + 0.16 * shine + (isDark ? 0.10 : -0.06) * grazing, 1.0), 1.0);
+    gl_FragColor = vec4(min(lit.rgb + 0.16 * shine + (isDark ? 0.10 : -0.06) * grazing, 1.0), 1.0);
   }
 }`;
 
@@ -151,7 +145,7 @@ export class Walls {
       attributes[name] = new BufferAttribute(new kind(each * vertices), each, kind === Uint8Array);
     this.attributes = attributes;
     this.areas = new Float32Array(set.corners.length / 3);
-    const uniforms = { rim: { value: new Vector3() }, byHits: { value: false }, isDark: { value: false }, seeThrough: { value: 1 } };
+    const uniforms = { rim: { value: new Vector3() }, byHits: { value: false }, isDark: { value: false } };
     const surface = (isGlass) => {
       const geometry = new BufferGeometry();
       for (const [name, attribute] of Object.entries(attributes)) geometry.setAttribute(name, attribute);
