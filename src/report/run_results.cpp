@@ -116,14 +116,16 @@ std::string by_patch(const RunJson& summary, const char* kind) {
 Table fates(const RunJson& summary) {
   Table table("What became of the particles", {"", "particles", "share"});
   const std::uint64_t all = count_in(summary, "/particles/start") + count_in(summary, "/particles/injected");
-  const std::pair<const char*, const char*> kinds[] = {{"injected", "came in later"}, {"escaped", "left"},
-                                                       {"absorbed", "were deposited"}, {"alive", "in the scene at the end"},
-                                                       {"held", "held in inverted cells"}, {"lost", "lost"}};
+  const std::pair<const char*, const char*> kinds[] = {
+      {"injected", "came in later"},      {"escaped", "left"},
+      {"absorbed", "were deposited"},     {"alive", "in the scene at the end"},
+      {"held", "held in inverted cells"}, {"lost", "lost"}};
   if (all == 0) return table;
   table.row({"all", grouped(all), "100%"});
   for (const auto& [key, text] : kinds) {
     const std::uint64_t n = count_in(summary, fmt::format("/particles/{}", key).c_str());
-    if (n > 0) table.row({text, grouped(n), fmt::format("{:.3g}%", 100.0 * static_cast<double>(n) / static_cast<double>(all))});
+    if (n > 0)
+      table.row({text, grouped(n), fmt::format("{:.3g}%", 100.0 * static_cast<double>(n) / static_cast<double>(all))});
   }
   return table;
 }
@@ -136,7 +138,8 @@ Table patches(const RunJson& summary) {
     const RunJson d = deposition.value(patch, RunJson::object());
     const auto value = [&](const char* key) { return d.contains(key) ? value_text(d[key]) : "0"; };
     if (met != 0 || count_in(d, "/deposited") + count_in(d, "/escaped") > 0)
-      table.row({name_text(patch), value_text(met), value("deposited"), value("fraction"), value("per_area"), value("escaped")});
+      table.row({name_text(patch), value_text(met), value("deposited"), value("fraction"), value("per_area"),
+                 value("escaped")});
   }
   return table;
 }
@@ -148,7 +151,8 @@ Table times(const RunJson& summary) {
   for (const char* kind : {"escaped", "absorbed"}) {
     const RunJson by_patch = all.value(kind, RunJson::object());
     for (const auto& [patch, t] : by_patch.items())
-      table.row({fmt::format("{} {}", kind == std::string_view("escaped") ? "left through" : "deposited at", name_text(patch)),
+      table.row({fmt::format("{} {}", kind == std::string_view("escaped") ? "left through" : "deposited at",
+                             name_text(patch)),
                  value_text(t.value("count", RunJson(0U))), value_text(t.value("mean", RunJson())),
                  value_text(t.value("least", RunJson())), value_text(t.value("most", RunJson()))});
   }
@@ -209,24 +213,25 @@ std::string run_caption(const fs::path& folder) {
   out += fmt::format(" moved for {:.4g} s ({}) through {}", end_time(folder), counted(count_in(s, "/steps"), "step"),
                      counted(count_in(s, "/environment/free_cells"), "cell"));
   out += fmt::format(" with {}.", counted(count_in(s, "/environment/wall_faces"), "wall face"));
-  if (const std::uint64_t n = count_in(s, "/contacts/total"); n > 0) out += fmt::format(" They met the walls {} times.", grouped(n));
+  if (const std::uint64_t n = count_in(s, "/contacts/total"); n > 0)
+    out += fmt::format(" They met the walls {} times.", grouped(n));
   std::string ends;
   if (const std::uint64_t n = count_in(s, "/particles/escaped"); n > 0)
     ends += fmt::format("{} left{}, ", grouped(n), by_patch(s, "/escaped"));
   if (const std::uint64_t n = count_in(s, "/particles/absorbed"); n > 0)
     ends += fmt::format("{} were deposited{}, ", grouped(n), by_patch(s, "/deposited"));
-  if (start + injected > 0) out += fmt::format(" {}{} were in the scene at the end.", ends, grouped(count_in(s, "/particles/alive")));
+  if (start + injected > 0)
+    out += fmt::format(" {}{} were in the scene at the end.", ends, grouped(count_in(s, "/particles/alive")));
   return out;
 }
 
 std::string run_results(const fs::path& folder) {
   const RunJson s = run_summary(folder);
-  const std::string tables = fates(s).text() + patches(s).text() + times(s).text() +
-                             list_table("Planes", s.value("/statistics/planes"_json_pointer, RunJson())) +
-                             list_table("Bodies", s.value("bodies", RunJson())) +
-                             list_table("Catheters", s.value("catheters", RunJson())) +
-                             list_table("Solids", s.value("tools", RunJson())) +
-                             list_table("Events", s.value("events", RunJson()));
+  const std::string tables =
+      fates(s).text() + patches(s).text() + times(s).text() +
+      list_table("Planes", s.value("/statistics/planes"_json_pointer, RunJson())) +
+      list_table("Bodies", s.value("bodies", RunJson())) + list_table("Catheters", s.value("catheters", RunJson())) +
+      list_table("Solids", s.value("tools", RunJson())) + list_table("Events", s.value("events", RunJson()));
   return tables.empty() ? tables : "<section class=\"tables\" aria-label=\"Results\">\n" + tables + "</section>\n";
 }
 

@@ -23,7 +23,7 @@ header p{margin:4px 0 12px;color:var(--muted);max-width:100ch}
 #view{position:relative;border:1px solid var(--faint);border-radius:8px;overflow:hidden;background:var(--panel)}
 #view .fallback{margin:0;padding:10px 14px;color:var(--muted)}
 #view .picture{display:block;width:100%;max-height:520px}
-.charts{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,430px),1fr));gap:14px;margin:18px 0}
+.charts{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,480px),1fr));gap:14px;margin:18px 0}
 .chart{margin:0;padding:8px;border:1px solid var(--faint);border-radius:8px;background:var(--panel)}
 .chart svg{display:block;width:100%;height:auto;font:12px system-ui,sans-serif;fill:var(--text)}
 .chart .title{font-weight:600;font-size:13px}

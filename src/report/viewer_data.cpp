@@ -31,7 +31,7 @@ using ViewerJson = nlohmann::ordered_json;
 
 constexpr std::size_t group_size = 16;          // frames
 constexpr std::size_t most_contacts = 250'000;  // beyond it, those of some slots are left out
-constexpr double usual_share = 0.98;            // of speeds that the colours distinguish: a few are far above all others
+constexpr double usual_share = 0.98;  // of speeds that the colours distinguish: a few are far above all others
 
 // A number that names a patch: 0 is none. If a map has as many patches as it can, the last two share one.
 std::uint16_t patch_or_none(std::uint16_t patch) {
@@ -48,8 +48,9 @@ struct SolidSeries {
 
 class Builder {
  public:
-  Builder(const RecordedFile& file, const ReportOptions& options)
+  Builder(const RecordedFile& file, const ReportOptions& options, const Vec3& gravity)
       : file_(file),
+        gravity_(gravity),
         chosen_(select(file, options)),
         slots_(chosen_.ids.size()),
         threads_(options.threads),
@@ -64,6 +65,7 @@ class Builder {
     describe_solids();
     describe_events();
     json_["opening"] = opening_frame();
+    json_["gravity"] = {gravity_.x, gravity_.y, gravity_.z};
     parallel_for(data_.blocks.size(), 1, threads_, [this](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) data_.blocks[i] = base64(gzipped(data_.blocks[i]));
     });
@@ -448,6 +450,7 @@ class Builder {
   }
 
   const RecordedFile& file_;
+  Vec3 gravity_;
   ReportSelection chosen_;
   std::size_t slots_;
   Threads threads_;
@@ -462,8 +465,8 @@ class Builder {
 
 }  // namespace
 
-ViewerData viewer_data(const RecordedFile& file, const ReportOptions& options) {
-  return Builder(file, options).build();
+ViewerData viewer_data(const RecordedFile& file, const ReportOptions& options, const Vec3& gravity) {
+  return Builder(file, options, gravity).build();
 }
 
 }  // namespace dartcast

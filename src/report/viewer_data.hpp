@@ -18,7 +18,8 @@ struct ViewerData {
 };
 
 /// The frames that are shown: those that a run writes every so many steps, and the last one. At most `options.frames`
-/// and `options.particles`, evenly chosen. Throws Error as RecordedFile.
-ViewerData viewer_data(const RecordedFile& file, const ReportOptions& options);
+/// and `options.particles`, evenly chosen. `gravity`: of the scene (m/s^2), so that the page knows what is down. Throws
+/// Error as RecordedFile.
+ViewerData viewer_data(const RecordedFile& file, const ReportOptions& options, const Vec3& gravity);
 
 }  // namespace dartcast

@@ -10,10 +10,12 @@
 
 #include "dartcast/error.hpp"
 #include "dartcast/report.hpp"
+#include "dartcast/scene_file.hpp"
 #include "formats/file_write.hpp"
 #include "report/grouped.hpp"
 #include "report/run_charts.hpp"
 #include "report/run_results.hpp"
+#include "report/summary_file.hpp"
 #include "report/viewer_page.hpp"
 
 namespace dartcast {
@@ -46,6 +48,15 @@ std::string body_of(const fs::path& folder) {
   return body + run_origin(folder);
 }
 
+// A folder may have no scene that can be read, as that of a program: then nothing is down.
+Vec3 gravity_of(const fs::path& folder) {
+  try {
+    return parse_scene(run_text(folder / "scene.toml"), folder / "scene.toml").motion.gravity;
+  } catch (const Error&) {
+    return {};
+  }
+}
+
 }  // namespace
 
 fs::path report_file(const fs::path& run_folder) { return run_folder / "report.html"; }
@@ -57,9 +68,10 @@ ReportSummary write_report(const fs::path& run_folder, const ReportOptions& opti
     throw InvalidArgument(fmt::format("report: {} frames; give at most {}", options.frames, most_frames));
   const RecordedFile file(run_folder / "report.bin");
   const ViewerPage around = {scene_name(run_folder), run_caption(run_folder), body_of(run_folder)};
+  const Vec3 gravity = gravity_of(run_folder);
   ReportOptions now = options;
   for (bool reduced = false;; reduced = true) {
-    ViewerData data = viewer_data(file, now);
+    ViewerData data = viewer_data(file, now, gravity);
     if (reduced)
       data.taken.notes.push_back(fmt::format("with {} particles and {} frames the report would have more than {} MB",
                                              grouped(options.particles), grouped(options.frames),

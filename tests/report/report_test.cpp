@@ -271,11 +271,16 @@ TEST_F(Report, WallsAreThoseOfTheSimulation) {
   const nlohmann::json& walls = report.meta["walls"][1];
   const auto corners = report.block<std::uint32_t>(walls["corners"]);
   const auto patches = report.block<std::uint16_t>(walls["face_patch"]);
-  const auto hits = report.block<std::uint32_t>(walls["face_hits"]);
+  const auto face = report.block<std::uint32_t>(walls["face"]);
+  const auto polygons = walls["polygons"].get<std::size_t>();
+  const auto hits = report.series<std::uint16_t>(walls["hits"], polygons);
+  ASSERT_EQ(walls["hits"]["per"], 1);
   const auto points = walls["points"].get<std::size_t>();
   const auto positions = report.series<std::uint16_t>(walls["position"], 3 * points);
   const auto frames = positions.size() / (3 * points);
   ASSERT_EQ(frames, 11U - 4U);
+  ASSERT_EQ(hits.size(), frames * polygons);
+  for (std::size_t i = polygons; i < hits.size(); ++i) EXPECT_GE(hits[i], hits[i - polygons]);  // they grow
   const CombinatorialMap& map = simulation.environment().map();
   std::size_t triangle = 0;
   for (const Cell c : map.cells()) {
@@ -286,7 +291,7 @@ TEST_F(Report, WallsAreThoseOfTheSimulation) {
       for (std::size_t t = 2; t < n; ++t, ++triangle) {
         ASSERT_LT(triangle, patches.size());
         EXPECT_EQ(patches[triangle], map.patch({c, f}).value);
-        EXPECT_EQ(hits[triangle], simulation.statistics().hits.of({c, f}));
+        EXPECT_EQ(hits[(frames - 1) * polygons + face[triangle]], simulation.statistics().hits.of({c, f}));
         const std::size_t fan[] = {0, t - 1, t};
         for (std::size_t k = 0; k < 3; ++k) {
           const Vec3& truth = simulation.environment().positions()[view.vertex(view.shape().corners(f)[fan[k]]).value];
@@ -323,8 +328,34 @@ TEST_F(Report, ARunThatWasCutOffGivesTheSameReport) {
 TEST_F(Report, HitsAreTheSameByEitherCount) {
   run(busy, "counted");
   run(without(busy, "[statistics]\nhits = true\n"), "own");
-  EXPECT_EQ(page("counted").meta["hits_max"], page("own").meta["hits_max"]);
-  EXPECT_GT(page("own").meta["hits_max"], 0);
+  const nlohmann::json counted = page("counted").meta["walls"].back()["hits"];
+  EXPECT_EQ(counted, page("own").meta["walls"].back()["hits"]);
+  EXPECT_GT(counted["max"], 0);
+}
+
+// The page opens after the last change of the scene, and says which way is down.
+TEST_F(Report, OpensOnATellingFrame) {
+  run(busy, "a");
+  run(injecting, "b");
+  const nlohmann::json changed = page("a").meta;
+  const double cut = changed["events"][0]["time"];
+  EXPECT_GE(changed["frames"][changed["opening"].get<std::size_t>()]["time"].get<double>(), cut);
+  EXPECT_EQ(changed["gravity"], nlohmann::json({0.0, 0.0, 0.0}));
+  // Particles come in all the time: the start shows seven of them.
+  EXPECT_GT(page("b").meta["opening"], 0);
+}
+
+TEST_F(Report, SaysWhatCameOut) {
+  const Summary summary = run(injecting, "a");
+  const std::string text = page("a").text;
+  const auto says = [&](const std::string& part) { return text.find(part) != std::string::npos; };
+  EXPECT_TRUE(says("7 particles, and " + std::to_string(summary.totals.injected) +
+                   " that came in later, moved for 2 s (40 steps)"));
+  EXPECT_TRUE(says("dartcast run scene.toml --steps 40"));
+  EXPECT_TRUE(says("State hash " + summary.state_hash));
+  EXPECT_TRUE(says("rate = 60.0"));  // the scene's text
+  EXPECT_LT(text.find("What became of the particles"), text.find("<summary>Method"));
+  EXPECT_GT(text.find("Orientation tests over time"), text.find("<summary>Method"));
 }
 
 TEST_F(Report, TheStateDoesNotDependOnIt) {

@@ -26,7 +26,7 @@ class Viewer {
     const viewer = new Viewer();
     api.viewer = viewer;
     viewer.box = new Box(data.box);
-    viewer.stage = new Stage(viewer.box, data.dimension);
+    viewer.stage = new Stage(viewer.box, data.dimension, data.gravity);
     viewer.data = data;
     viewer.opening = Math.min(data.opening ?? 0, data.frames.length - 1);
     await viewer.load();

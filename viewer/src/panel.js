@@ -117,7 +117,7 @@ export class Panel {
     const all = button('Show all (F)', () => this.actions.frame());
     if (this.stage.dimension === 2) return [element('h2', {}, 'View'), all];
     const from = choice('View from', [['', 'chosen'], ...presets.map((p) => [p, p])], '', (p) => this.stage.look(p));
-    return [element('h2', {}, 'View'), element('label', {}, 'from', from), all];
+    return [element('h2', {}, 'View'), element('label', {}, 'from', from, all)];
   }
 
   cutPart() {
@@ -130,13 +130,14 @@ export class Panel {
       const share = Number(place.value) / 1000;
       this.stage.clip(direction, share);
       const k = axes.indexOf(axis.value);
+      where.hidden = direction === null;
       where.textContent = direction === null ? '' : k < 0
         ? `${shortLength((share - 0.5) * 2 * box.radius)} from the middle`
         : `${axis.value} = ${shortLength(box.low[k] + share * box.size[k])}`;
       this.viewer.redraw();
     };
     const place = slider('Place of the cut', { min: 0, max: 1000, step: 1, value: 500 }, change);
-    const where = element('output', { class: 'where' });
+    const where = element('output', { class: 'where', hidden: true });
     // The plane keeps its direction when the scene turns, so that one can look at the cut.
     const turn = () => {
       const k = axes.indexOf(axis.value);

@@ -29,7 +29,7 @@ vec3 colourOf(float v) {
   return texture2D(palette, vec2(at, 0.5)).rgb;
 }`;
 const vertexShader = `${common}
-uniform float perUnit; uniform float diameter; uniform vec2 pixels; uniform float orthographic;
+uniform vec2 screen; uniform float perUnit; uniform float diameter; uniform vec2 pixels; uniform float orthographic;
 uniform sampler2D wallDepth; uniform bool hidesBehindWalls; uniform float luminance; uniform bool isDark;
 attribute vec3 next; attribute float radius;
 varying vec3 colour; varying vec3 ring; varying float border;
@@ -50,8 +50,12 @@ void main() {
   float v = valueNow();
   bool isHidden = there <= 0.0 || !isWanted(v);
   if (hidesBehindWalls) {
+    // The neighbours count, too: at the rim of a wall the centre may be in a pixel beside it.
     vec3 at = gl_Position.xyz / gl_Position.w * 0.5 + 0.5;
-    isHidden = isHidden || at.z > texture2D(wallDepth, at.xy).r;
+    vec3 one = vec3(1.5 / screen, 0.0);
+    float wall = min(texture2D(wallDepth, at.xy).r, min(min(texture2D(wallDepth, at.xy + one.xz).r, texture2D(wallDepth, at.xy - one.xz).r),
+      min(texture2D(wallDepth, at.xy + one.zy).r, texture2D(wallDepth, at.xy - one.zy).r)));
+    isHidden = isHidden || at.z > wall;
   }
   float away = orthographic > 0.5 ? 1.0 : -mvPosition.z;
   float across = radius > 0.0 ? max(2.0 * radius * perUnit / away, 1.5) : clamp(diameter * perUnit / away, pixels.x, pixels.y);
@@ -66,6 +70,7 @@ const fragmentShader = `
 varying vec3 colour; varying vec3 ring; varying float border;
 uniform float ringPixels;
 void main() {
+  vec4 diffuseColor = vec4(1.0); // that the next line writes to
   #include <clipping_planes_fragment>
   vec2 p = 2.0 * gl_PointCoord - 1.0;
   float pixel = 2.0 / border;

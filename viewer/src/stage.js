@@ -30,8 +30,9 @@ export const presets = Object.keys(directions);
 
 export class Stage {
   /** Throws where there is no WebGL. */
-  constructor(box, dimension) {
+  constructor(box, dimension, gravity = [0, 0, 0]) {
     this.box = box;
+    this.standsUpright = Math.abs(gravity[2]) > 0.9 * Math.hypot(...gravity);
     this.dimension = dimension;
     this.canvas = document.createElement('canvas');
     this.canvas.tabIndex = 0;
@@ -104,13 +105,14 @@ export class Stage {
     this.draw();
   }
 
-  /** Along the shorter horizontal side, from above a little; from above where the scene is flat; a long scene lies along the stage. */
+  /** Along the shorter horizontal side, from above a little; from above where the scene is flat. A long scene lies along the
+   *  stage, if gravity does not say which way is down. */
   lookFrom([sx, sy, sz]) {
     const direction = this.direction ? new Vector3(...this.direction) : sy <= sx ? new Vector3(0.35, -1, 0.3) : new Vector3(1, -0.35, 0.3);
     const up = this.up ? [...this.up] : [0, 0, 1];
     const isWide = this.camera.aspect > 1.2;
     if (!this.direction && sz < 0.25 * Math.min(sx, sy)) direction.z = 1.2;
-    else if (!this.direction && !this.up && isWide && sz > 1.3 * Math.max(sx, sy)) {
+    else if (!this.direction && !this.up && isWide && !this.standsUpright && sz > 1.3 * Math.max(sx, sy)) {
       direction.set(...(sy <= sx ? [-0.3, -1, -0.15] : [-1, -0.3, -0.15]));
       up.splice(0, 3, ...(sy <= sx ? [-1, 0, 0] : [0, -1, 0]));
     }
@@ -214,9 +216,9 @@ export class Stage {
     const size = this.renderer.getDrawingBufferSize(new Vector2());
     if (!this.depth) {
       this.depth = new WebGLRenderTarget(size.x, size.y, { depthTexture: new DepthTexture(size.x, size.y, UnsignedIntType) });
-      const sided = (side, offset) => new MeshBasicMaterial({ side, colorWrite: false, polygonOffset: true, polygonOffsetFactor: offset, polygonOffsetUnits: 4 * offset });
+      const sided = (side, offset, units) => new MeshBasicMaterial({ side, colorWrite: false, polygonOffset: true, polygonOffsetFactor: offset, polygonOffsetUnits: units });
       this.depthScene = new Scene();
-      this.depthMeshes = [new Mesh(mesh.geometry, sided(FrontSide, -1)), new Mesh(mesh.geometry, sided(BackSide, 1))];
+      this.depthMeshes = [new Mesh(mesh.geometry, sided(FrontSide, -1, -64)), new Mesh(mesh.geometry, sided(BackSide, 1, 4))];
       for (const m of this.depthMeshes) m.frustumCulled = false;
       this.depthScene.add(...this.depthMeshes);
     }

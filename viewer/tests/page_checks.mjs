@@ -4,7 +4,7 @@ import { pathToFileURL } from 'node:url';
 
 /** Opens a page and collects what it says and asks for. */
 export async function open(browser, file, options = {}) {
-  const page = await browser.newPage({ viewport: { width: 1000, height: 800 }, ...options });
+  const page = await browser.newPage({ viewport: { width: 1000, height: 800 }, reducedMotion: 'reduce', ...options });
   const said = [];
   const requests = [];
   page.on('console', (m) => ['error', 'warning'].includes(m.type()) && said.push(`${m.type()}: ${m.text()}`));
@@ -33,8 +33,8 @@ export const ink = (page) => page.evaluate(() => {
   return n / (data.length / 4);
 });
 
-const frameCount = (page) => page.evaluate(() => window.dartcastReport.viewer.data.frames.length);
-const goTo = (page, f) => page.evaluate((k) => window.dartcastReport.viewer.player.go(k), f);
+export const frameCount = (page) => page.evaluate(() => window.dartcastReport.viewer.data.frames.length);
+export const goTo = (page, f) => page.evaluate((k) => window.dartcastReport.viewer.player.go(k), f);
 /** All coordinates that are drawn: of particles, walls and solids. */
 const drawn = (page) => page.evaluate(() => {
   const { particles, walls, solids } = window.dartcastReport.viewer;
@@ -54,16 +54,16 @@ async function drawsAndMoves({ page }) {
 
 /** Clicks on particles in the middle of nothing else: the one that is named must be where the click was. */
 async function clickNamesParticle({ page }) {
-  if (!(await page.evaluate(() => window.dartcastReport.viewer.particles?.shown > 0))) return;
+  if (!(await page.evaluate(() => window.dartcastReport.viewer.particles?.now().slots.length > 0))) return;
   const target = await page.evaluate(() => {
     const { particles, stage } = window.dartcastReport.viewer;
     const { clientWidth: width, clientHeight: height } = stage.canvas;
     const place = stage.camera.position.clone();
-    const all = [];
-    for (let n = 0; n < particles.shown; ++n) {
-      const p = place.clone().fromArray(particles.positions.array, 3 * n).project(stage.camera);
-      all.push({ slot: particles.shownSlots[n], x: ((p.x + 1) * width) / 2, y: ((1 - p.y) * height) / 2, z: p.z });
-    }
+    const { slots, points } = particles.now();
+    const all = slots.map((slot, n) => {
+      const p = place.clone().fromArray(points, 3 * n).project(stage.camera);
+      return { slot, x: ((p.x + 1) * width) / 2, y: ((1 - p.y) * height) / 2, z: p.z };
+    });
     // The one whose next neighbour on the screen is farthest, so that the truth is plain.
     let best = null;
     for (const a of all.slice(0, 300)) {
@@ -120,9 +120,9 @@ async function optionsChangeThePicture({ page }) {
     stage.drawNow();
     return stage.canvas.toDataURL();
   });
-  if (await page.evaluate(() => window.dartcastReport.viewer.particles?.shown > 1)) {
+  if (await page.evaluate(() => window.dartcastReport.viewer.particles?.now().slots.length > 1)) {
     const before = await picture();
-    await page.getByLabel('Colour by').selectOption('id');
+    await page.getByLabel('Colour by', { exact: true }).selectOption('id');
     assert.notEqual(await picture(), before, 'another quantity changes no colour');
   }
   await page.getByRole('button', { name: 'Show all' }).click();
@@ -141,7 +141,7 @@ async function optionsChangeThePicture({ page }) {
 
 /** A patch has one colour among the particles that met it and among the walls, and no other patch has it. */
 async function patchesHaveOneColour({ page }) {
-  const quantity = page.getByLabel('Colour by');
+  const quantity = page.getByLabel('Colour by', { exact: true });
   if (await quantity.count() === 0) return;
   await quantity.selectOption('patch');
   const [met, walls] = await page.evaluate(() => ['.legend .entry', '.patch'].map((kind) =>

@@ -6,6 +6,7 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { launch, withoutWebGL } from './browser.mjs';
+import { checkControls } from './control_checks.mjs';
 import { checkFallback, checkReport } from './page_checks.mjs';
 
 // Steps of each scene, which has some seven frames then.
@@ -66,6 +67,7 @@ async function check(makeFiles) {
   };
   // The scheme makes the same difference in every scene.
   for (const [i, file] of files.entries()) await report(file, () => checkReport(browser, file, i === 0 ? ['light', 'dark'] : ['light']));
+  for (const scheme of ['light', 'dark']) await report(`the controls of ${files[0]}, ${scheme}`, () => checkControls(browser, files[0], scheme));
   await browser.close();
   const { browser: blind } = await launch(withoutWebGL);
   await report(`${files[0]} without WebGL`, () => checkFallback(blind, files[0]));
