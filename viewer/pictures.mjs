@@ -15,10 +15,10 @@ const margin = 14; // pixels around what is drawn
 const mostBytes = 2_000_000; // of a moving picture
 
 // `at`: the moment, as a share of the run. `walls`: how patches are drawn; others as the viewer does. `from`: the direction
-// that the camera looks from; `up`: the one that is up. `wallNames`: whether the legend has them. `moving`: the number of frames, and their width.
+// that the camera looks from; `up`: the one that is up. `wallNames`: whether the legend has them. `scheme`: light, if not given. `moving`: the number of frames, and their width.
 const pictures = [
   {
-    name: 'vessel', scenes: ['vessel'], colour: 'speed', from: [-0.3, -1, -0.1], up: [-1, 0, 0], width: 900,
+    name: 'vessel', scenes: ['vessel'], colour: 'speed', from: [-0.3, -1, -0.1], up: [-1, 0, 0], width: 900, scheme: 'dark', tails: true,
     walls: { inlet: 'hidden', outlet_left: 'hidden', outlet_right: 'hidden' },
     caption: '10,000 particles in a vessel that bends and pulses, coloured by speed',
     moving: { frames: 48, width: 820 },
@@ -57,12 +57,12 @@ function report(command, scenes, scene, work) {
 }
 
 /** Leaves the stage alone on the page, and sets colours and walls. */
-async function prepare(page, { colour, walls, width, from, up }) {
+async function prepare(page, { colour, walls, width, from, up, tails }) {
   await page.setViewportSize({ width, height: width });
-  await page.evaluate(({ colour, walls, from, up }) => {
+  await page.evaluate(({ colour, walls, from, up, tails }) => {
     const { viewer } = window.dartcastReport;
     const style = document.createElement('style');
-    style.textContent = `header,.side,.time,.picked,.charts,main>:not(#view){display:none!important}main{max-width:none;padding:0}
+    style.textContent = `header,.side,.time,.picked,.axes,.scale,main>:not(#view){display:none!important}main{max-width:none;padding:0}
       #view{border:0!important;border-radius:0!important}#view.live{display:block!important}#view .stage{height:100vh!important;max-height:none!important}`;
     document.head.append(style);
     if (colour && viewer.particles) viewer.particles.colourBy(colour);
@@ -72,18 +72,21 @@ async function prepare(page, { colour, walls, width, from, up }) {
     viewer.walls.restyle();
     viewer.panel.refresh();
     viewer.stage.direction = from ?? null;
-    if (up) viewer.stage.camera.up.set(...up);
+    viewer.stage.up = up ?? null;
+    if (viewer.particles) viewer.particles.hasTails = tails === true;
     viewer.stage.resize();
     viewer.show(0);
     viewer.frame();
-  }, { colour, walls, from, up });
+  }, { colour, walls, from, up, tails });
 }
 
 /** Shows a frame and says where on the canvas something is drawn: left, top, right, bottom. */
 const inkBox = (page, frame) => page.evaluate((f) => {
   const { viewer } = window.dartcastReport;
   viewer.player.go(f);
+  viewer.stage.backdrop.visible = false;
   viewer.stage.drawNow();
+  viewer.stage.backdrop.visible = true;
   const { canvas } = viewer.stage;
   const copy = document.createElement('canvas');
   [copy.width, copy.height] = [canvas.width, canvas.height];
@@ -121,13 +124,14 @@ const legendOf = (page, wallNames) => page.evaluate((wanted) => {
   return { colours: panel.legend.innerHTML, walls: wanted ? names.join('') : '' };
 }, wallNames);
 
-/** Pieces side by side over the legend and the caption, on a white page. */
-async function composed(browser, pieces, legend, caption) {
+/** Pieces side by side over the legend and the caption. */
+async function composed(browser, pieces, legend, { caption, scheme }) {
   const page = await browser.newPage({ viewport: { width: 1400, height: 1200 } });
+  const [text, paper] = scheme === 'dark' ? ['#e6e9ed', '#14171b'] : ['#1b1f24', '#fff'];
   const images = pieces.map((p) => `<img src="data:image/png;base64,${p.toString('base64')}">`).join('');
-  await page.setContent(`<style>body{margin:0;font:14px system-ui,sans-serif;color:#1b1f24;background:#fff}
-    figure{margin:0;display:inline-block;background:#f6f7f9}.images{display:flex;align-items:center;justify-content:center}
-    .below{display:flex;align-items:center;gap:8px 18px;flex-wrap:wrap;padding:8px ${margin}px 10px;background:#fff}
+  await page.setContent(`<style>body{margin:0;font:14px system-ui,sans-serif;color:${text};background:${paper}}
+    figure{margin:0;display:inline-block;background:${paper}}.images{display:flex;align-items:center;justify-content:center}
+    .below{display:flex;align-items:center;gap:8px 18px;flex-wrap:wrap;padding:8px ${margin}px 10px}
     .legend{min-width:190px}.bar{height:9px;border-radius:3px}.ends{display:flex;justify-content:space-between;font-size:12px}
     .entry{display:inline-flex;align-items:center;gap:5px;margin-right:12px}i{width:10px;height:10px;border-radius:2px;display:inline-block}
     figcaption{flex:1 1 260px}</style>
@@ -147,7 +151,7 @@ async function still(browser, files, picture) {
   const pieces = [];
   let legend;
   for (const file of files) {
-    const { page } = await open(browser, file);
+    const { page } = await open(browser, file, { colorScheme: picture.scheme ?? 'light' });
     await prepare(page, picture);
     const last = await page.evaluate(() => window.dartcastReport.viewer.data.frames.length - 1);
     const frame = Math.round(picture.at * last);
@@ -155,14 +159,14 @@ async function still(browser, files, picture) {
     legend = await legendOf(page, picture.wallNames);
     await page.close();
   }
-  return composed(browser, pieces, legend, picture.caption);
+  return composed(browser, pieces, legend, picture);
 }
 
 async function moving(browser, file, picture, out, work) {
-  const { page } = await open(browser, file);
+  const { page } = await open(browser, file, { colorScheme: picture.scheme ?? 'light' });
   await prepare(page, { ...picture, width: picture.moving.width });
   const last = await page.evaluate(() => window.dartcastReport.viewer.data.frames.length - 1);
-  const frames = Array.from({ length: picture.moving.frames }, (_, i) => Math.round((i * last) / (picture.moving.frames - 1)));
+  const frames = Array.from({ length: picture.moving.frames }, (_, i) => (i * last) / (picture.moving.frames - 1));
   const boxes = [];
   for (const f of frames) boxes.push(await inkBox(page, f));
   const box = union(boxes);
@@ -170,7 +174,7 @@ async function moving(browser, file, picture, out, work) {
   const names = [];
   for (const [i, f] of frames.entries()) {
     names.push(join(work, `${picture.name}_${String(i).padStart(3, '0')}.png`));
-    writeFileSync(names.at(-1), await composed(browser, [await shot(page, f, box)], legend, picture.caption));
+    writeFileSync(names.at(-1), await composed(browser, [await shot(page, f, box)], legend, picture));
   }
   await page.close();
   run('img2webp', ['-loop', '0', '-lossy', '-q', '55', '-m', '6', '-d', '90', ...names, '-o', out]);

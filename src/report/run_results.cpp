@@ -1,4 +1,4 @@
-// What a run was and what came out, in words and tables.
+// The results of a run, in words and tables.
 #include "report/run_results.hpp"
 
 #include <fmt/chrono.h>
@@ -64,9 +64,9 @@ std::string name_text(std::string name) {
   return name.empty() ? "no patch" : name;
 }
 
-class Table {
+class ResultTable {
  public:
-  Table(std::string_view title, std::initializer_list<std::string> head) : title_(title), head_(head) {}
+  ResultTable(std::string_view title, std::initializer_list<std::string> head) : title_(title), head_(head) {}
 
   void row(std::vector<std::string> fields) { rows_.push_back(std::move(fields)); }
   [[nodiscard]] std::string text() const {
@@ -113,8 +113,8 @@ std::string by_patch(const RunJson& summary, const char* kind) {
   return out.empty() ? out : " (" + out + ")";
 }
 
-Table fates(const RunJson& summary) {
-  Table table("What became of the particles", {"", "particles", "share"});
+ResultTable fates(const RunJson& summary) {
+  ResultTable table("What became of the particles", {"", "particles", "share"});
   const std::uint64_t all = count_in(summary, "/particles/start") + count_in(summary, "/particles/injected");
   const std::pair<const char*, const char*> kinds[] = {
       {"injected", "came in later"},      {"escaped", "left"},
@@ -130,8 +130,8 @@ Table fates(const RunJson& summary) {
   return table;
 }
 
-Table patches(const RunJson& summary) {
-  Table table("Walls by patch", {"patch", "contacts", "deposited", "share", "per m²", "left"});
+ResultTable patches(const RunJson& summary) {
+  ResultTable table("Walls by patch", {"patch", "contacts", "deposited", "share", "per m²", "left"});
   const RunJson deposition = summary.value("deposition", RunJson::object());
   const RunJson contacts = summary.value("/contacts/by_patch"_json_pointer, RunJson::object());
   for (const auto& [patch, met] : contacts.items()) {
@@ -145,8 +145,8 @@ Table patches(const RunJson& summary) {
 }
 
 // Times that particles were in the scene until they left it, or until they were deposited.
-Table times(const RunJson& summary) {
-  Table table("Time in the scene (s)", {"", "particles", "mean", "least", "most"});
+ResultTable times(const RunJson& summary) {
+  ResultTable table("Time in the scene (s)", {"", "particles", "mean", "least", "most"});
   const RunJson all = summary.value("/statistics/residence_time"_json_pointer, RunJson::object());
   for (const char* kind : {"escaped", "absorbed"}) {
     const RunJson by_patch = all.value(kind, RunJson::object());
