@@ -39,7 +39,10 @@ export class Panel {
       grip.setAttribute('aria-expanded', on);
     };
     const grip = button('Options', () => open(!this.element.classList.contains('open')), { class: 'grip', 'aria-expanded': 'false' });
-    grip.addEventListener('pointerdown', (e) => { from = e.clientY; });
+    grip.addEventListener('pointerdown', (e) => {
+      from = e.clientY;
+      grip.setPointerCapture(e.pointerId); // the finger leaves the grip
+    });
     grip.addEventListener('pointerup', (e) => {
       if (from !== null && Math.abs(e.clientY - from) > 24) {
         open(e.clientY < from);
