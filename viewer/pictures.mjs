@@ -84,9 +84,7 @@ async function prepare(page, { colour, walls, width, from, up, tails }) {
 const inkBox = (page, frame) => page.evaluate((f) => {
   const { viewer } = window.dartcastReport;
   viewer.player.go(f);
-  viewer.stage.backdrop.visible = false;
   viewer.stage.drawNow();
-  viewer.stage.backdrop.visible = true;
   const { canvas } = viewer.stage;
   const copy = document.createElement('canvas');
   [copy.width, copy.height] = [canvas.width, canvas.height];

@@ -59,19 +59,19 @@ class Builder {
   ViewerData build() {
     read_frames();
     describe_scene();
+    describe_events();
+    opening_ = opening_frame();
+    json_["opening"] = opening_;
+    json_["gravity"] = {gravity_.x, gravity_.y, gravity_.z};
     describe_particles();
     describe_contacts();
     describe_walls();
     describe_solids();
-    describe_events();
-    json_["opening"] = opening_frame();
-    json_["gravity"] = {gravity_.x, gravity_.y, gravity_.z};
     parallel_for(data_.blocks.size(), 1, threads_, [this](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) data_.blocks[i] = base64(gzipped(data_.blocks[i]));
     });
     data_.description = json_.dump(-1, ' ', false, ViewerJson::error_handler_t::replace);
-    const auto opening = json_["opening"].get<std::size_t>();
-    data_.picture = picture_of(frames_[opening], walls_.at(chosen_.frames[opening].walls), file_.header().dimension);
+    data_.picture = picture_of(frames_[opening_], walls_.at(chosen_.frames[opening_].walls), file_.header().dimension);
     return std::move(data_);
   }
 
@@ -86,26 +86,28 @@ class Builder {
     return block(std::string(bytes_of(std::span<const T>(values))));
   }
 
-  // The first frame stands alone, so that it can be drawn before the others are decoded.
+  // The frame to open on stands alone, so that it can be drawn before the others are decoded. `begin`: the first frame.
   template <class T, class Code>
-  ViewerJson series(const std::vector<T>& values, std::size_t each, Code&& code) {
+  ViewerJson series(const std::vector<T>& values, std::size_t each, std::size_t begin, Code&& code) {
     ViewerJson groups = ViewerJson::array();
     const std::size_t frames = each == 0 ? 0 : values.size() / each;
     for (std::size_t first = 0; first < frames;) {
-      const std::size_t count = first == 0 ? 1 : std::min(group_size, frames - first);
+      const std::size_t at = begin + first;
+      std::size_t count = at == opening_ ? 1 : std::min(group_size, frames - first);
+      if (at < opening_) count = std::min(count, opening_ - at);
       const std::span<const T> part(values.data() + first * each, count * each);
       groups.push_back({{"first", first}, {"count", count}, {"block", block(code(part, each))}});
       first += count;
     }
     return {{"groups", groups}};
   }
-  ViewerJson position_series(const std::vector<RecordedPoint>& points, std::size_t each) {
+  ViewerJson position_series(const std::vector<RecordedPoint>& points, std::size_t each, std::size_t begin = 0) {
     std::vector<std::uint16_t> values;
     values.reserve(points.size() * 3);
     for (const RecordedPoint& p : points) {
       for (const std::uint16_t q : box_.quantised(p)) values.push_back(q);
     }
-    return series(values, each * 3, second_differences);
+    return series(values, each * 3, begin, second_differences);
   }
 
   const std::vector<RecordedPoint>& wall_points(std::size_t frame) const {
@@ -220,7 +222,7 @@ class Builder {
     });
     std::vector<std::uint32_t> ids(chosen_.ids.begin(), chosen_.ids.end());
     const bool has_radii = std::any_of(radii.begin(), radii.end(), [](float r) { return r > 0.0F; });
-    ViewerJson speed = series(values_of(speed_bytes), slots_, first_differences);
+    ViewerJson speed = series(values_of(speed_bytes), slots_, 0, first_differences);
     speed["max"] = fastest;
     speed["usual"] = usual_speed();
     json_["particles"] = {{"count", slots_}, {"of", chosen_.all_ids}};
@@ -232,7 +234,7 @@ class Builder {
     out["radius"] = has_radii ? ViewerJson(block(radii)) : ViewerJson();
     out["position"] = position_series(values_of(positions), slots_);
     out["speed"] = std::move(speed);
-    out["kind"] = series(values_of(kinds), slots_, first_differences);
+    out["kind"] = series(values_of(kinds), slots_, 0, first_differences);
   }
 
   // The speed that few particles pass.
@@ -294,7 +296,7 @@ class Builder {
         met[k * slots_ + slot] = last;
       }
     }
-    return series(met, slots_, second_differences);
+    return series(met, slots_, 0, second_differences);
   }
 
   void describe_contacts() {
@@ -376,7 +378,7 @@ class Builder {
       for (std::size_t f = 0; f < faces; ++f)
         values.push_back(static_cast<std::uint16_t>(hits.empty() ? 0 : hits[f] / per));
     }
-    ViewerJson out = series(values, faces, second_differences);
+    ViewerJson out = series(values, faces, begin, second_differences);
     out["per"] = per;
     out["max"] = most;
     return out;
@@ -403,7 +405,7 @@ class Builder {
       entry["face_patch"] = block(faces.patches);
       entry["face"] = block(faces.polygons);
       entry["edges"] = faces.edges.empty() ? ViewerJson() : ViewerJson(block(faces.edges));
-      entry["position"] = position_series(points, walls.points.size());
+      entry["position"] = position_series(points, walls.points.size(), begin);
       entry["hits"] = hits_series(begin, end, walls.patches.size());
       json_["walls"].push_back(std::move(entry));
       begin = end;
@@ -451,6 +453,7 @@ class Builder {
 
   const RecordedFile& file_;
   Vec3 gravity_;
+  std::size_t opening_ = 0;
   ReportSelection chosen_;
   std::size_t slots_;
   Threads threads_;

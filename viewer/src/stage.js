@@ -1,26 +1,10 @@
 // The stage: canvas, camera, background, cutting plane. It draws on demand.
 import {
-  BackSide, BufferAttribute, BufferGeometry, DepthTexture, DirectionalLight, FrontSide, HemisphereLight, Mesh, MeshBasicMaterial, OrthographicCamera,
-  PerspectiveCamera, Plane, Scene, ShaderMaterial, UnsignedIntType, Vector2, Vector3, WebGLRenderer, WebGLRenderTarget,
+  BackSide, Color, DepthTexture, DirectionalLight, FrontSide, HemisphereLight, Mesh, MeshBasicMaterial, OrthographicCamera,
+  PerspectiveCamera, Plane, Scene, UnsignedIntType, Vector2, Vector3, WebGLRenderer, WebGLRenderTarget,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
-import { pageColours } from './colours.js';
-
-/** A whole screen behind the scene: a little lighter in the middle. */
-function makeBackdrop() {
-  const geometry = new BufferGeometry();
-  geometry.setAttribute('position', new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
-  const material = new ShaderMaterial({
-    uniforms: { middle: { value: new Vector3() }, rim: { value: new Vector3() } },
-    vertexShader: 'varying vec2 at; void main() { at = position.xy; gl_Position = vec4(position.xy, 1.0, 1.0); }',
-    fragmentShader: 'uniform vec3 middle; uniform vec3 rim; varying vec2 at; void main() { gl_FragColor = vec4(mix(middle, rim, 0.5 * dot(at, at)), 1.0); }',
-    depthTest: false, depthWrite: false,
-  });
-  const backdrop = new Mesh(geometry, material);
-  backdrop.frustumCulled = false;
-  backdrop.renderOrder = -1;
-  return backdrop;
-}
+import { linear, pageColours } from './colours.js';
 
 const directions = {
   front: [[0, -1, 0], [0, 0, 1]], back: [[0, 1, 0], [0, 0, 1]], left: [[-1, 0, 0], [0, 0, 1]], right: [[1, 0, 0], [0, 0, 1]],
@@ -42,10 +26,9 @@ export class Stage {
     if (!context) throw new Error('WebGL is missing');
     this.renderer = new WebGLRenderer({ canvas: this.canvas, context, antialias: true });
     this.scene = new Scene();
-    this.backdrop = makeBackdrop();
     const sun = new DirectionalLight(0xffffff, 2.2);
     sun.position.set(1, -2, 3);
-    this.scene.add(this.backdrop, new HemisphereLight(0xffffff, 0x8a94a0, 1.9), sun);
+    this.scene.add(new HemisphereLight(0xffffff, 0x8a94a0, 1.9), sun);
     this.plane = new Plane(new Vector3(-1, 0, 0), 0);
     this.drawn = 0;
     this.observers = []; // called before a frame is drawn
@@ -183,12 +166,7 @@ export class Stage {
   }
 
   colour() {
-    const { background, isDark } = pageColours();
-    this.page = pageColours();
-    const { middle, rim } = this.backdrop.material.uniforms;
-    const lighter = isDark ? 0.018 : 0.012;
-    middle.value.set(...background.map((c) => Math.min(1, c + lighter)));
-    rim.value.set(...background.map((c) => c - lighter));
+    this.renderer.setClearColor(new Color().setRGB(...linear(pageColours().background)));
   }
 
   /** Cuts away what lies beyond a share of the box along a direction; null: nothing. */

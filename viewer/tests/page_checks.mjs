@@ -19,9 +19,7 @@ export async function open(browser, file, options = {}) {
 /** The share of pixels that are not the background, read in the task that draws them. */
 export const ink = (page) => page.evaluate(() => {
   const { stage } = window.dartcastReport.viewer;
-  stage.backdrop.visible = false; // it is lighter in the middle
   stage.drawNow();
-  stage.backdrop.visible = true;
   const copy = document.createElement('canvas');
   copy.width = stage.canvas.width;
   copy.height = stage.canvas.height;
