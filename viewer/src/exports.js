@@ -74,9 +74,11 @@ export class Exports {
     const all = player.frames[player.last].time - player.frames[0].time;
     const wall = seconds ?? Math.max(1, all / player.rate);
     this.compose();
-    const kind = ['video/webm;codecs=vp9', 'video/webm;codecs=vp8', 'video/webm'].find((k) => MediaRecorder.isTypeSupported(k));
+    const kind = ['video/webm;codecs=vp8', 'video/webm'].find((k) => MediaRecorder.isTypeSupported(k));
     if (!kind) throw new Error('this browser writes no WebM');
-    const recorder = new MediaRecorder(this.canvas.captureStream(30), { mimeType: kind, videoBitsPerSecond: 8e6 });
+    const stream = this.canvas.captureStream(0); // it has the frames that are asked for
+    const [track] = stream.getVideoTracks();
+    const recorder = new MediaRecorder(stream, { mimeType: kind, videoBitsPerSecond: 8e6 });
     const parts = [];
     recorder.ondataavailable = (e) => parts.push(e.data);
     const ended = new Promise((done) => { recorder.onstop = done; });
@@ -87,7 +89,14 @@ export class Exports {
       share = Math.min(1, (performance.now() - began) / 1000 / wall);
       player.go(player.momentOf(player.frames[0].time + share * all));
       this.compose();
+      track.requestFrame();
       progress(share);
+    }
+    // A slow encoder has not begun by the end of a short film.
+    for (let i = 0; i < 50 && parts.reduce((sum, p) => sum + p.size, 0) < 500; ++i) {
+      track.requestFrame();
+      recorder.requestData();
+      await new Promise((next) => setTimeout(next, 100));
     }
     recorder.stop();
     await ended;

@@ -42,6 +42,7 @@ const drawn = (page) => page.evaluate(() => {
 });
 
 async function drawsAndMoves({ page }) {
+  await goTo(page, 0);
   assert(await ink(page) > 0.002, 'the first frame draws next to nothing');
   const before = await drawn(page);
   const last = (await frameCount(page)) - 1;
