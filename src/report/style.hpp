@@ -16,7 +16,7 @@ inline constexpr std::string_view page_style = R"css(
 --c0:#56b4e9;--c1:#f08040;--c2:#41825a;--c3:#a930ff;--c4:#ffc700;--c5:#bbffc9;--c6:#a3b2b6;--c7:#f3ff8e}}
 *{box-sizing:border-box}
 body{margin:0;background:var(--background);color:var(--text);font:15px/1.45 system-ui,sans-serif}
-header,main{max-width:1360px;margin:0 auto;padding:0 16px}
+header,main{max-width:1240px;margin:0 auto;padding:0 16px}
 header{padding-top:18px}
 h1{font-size:22px;margin:0}
 header p{margin:4px 0 12px;color:var(--muted);max-width:100ch}

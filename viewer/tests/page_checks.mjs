@@ -133,11 +133,15 @@ async function optionsChangeThePicture({ page }) {
   await page.getByRole('combobox', { name: 'Cut', exact: true }).selectOption('');
   await checkCutAcrossTheView(page);
   const walls = page.locator('#view .patch select');
+  // Particles close to the walls cover more than these.
+  const showParticles = (on) => page.evaluate((visible) => { if (window.dartcastReport.viewer.particles) window.dartcastReport.viewer.particles.object.visible = visible; }, on);
+  await showParticles(false);
   for (let i = 0; i < await walls.count(); ++i) await walls.nth(i).selectOption('shown');
   const shown = await ink(page);
   for (let i = 0; i < await walls.count(); ++i) await walls.nth(i).selectOption('hidden');
   assert(await walls.count() === 0 || await ink(page) < shown, 'hidden walls are drawn');
   for (let i = 0; i < await walls.count(); ++i) await walls.nth(i).selectOption('transparent');
+  await showParticles(true);
 }
 
 /** A patch has one colour among the particles that met it and among the walls, and no other patch has it. */
