@@ -72,8 +72,15 @@ void Inlets::add(const ParticlesScene& group, const InletParticles& inlet, std::
                  const std::optional<SampledPart>& part) {
   check({group.velocity, group.radius, group.user_data, group.material}, environment_, options_, "an inlet's");
   const bool by_flux = inlet.profile == InletProfile::flux;
-  Inlet added = {inlet, patch.value_or(Patch()), {}, RateIntegral(inlet.waveform), group.velocity, group.radius,
-                 group.user_data, group.material, group.with_field || by_flux};
+  Inlet added = {inlet,
+                 patch.value_or(Patch()),
+                 {},
+                 RateIntegral(inlet.waveform),
+                 group.velocity,
+                 group.radius,
+                 group.user_data,
+                 group.material,
+                 group.with_field || by_flux};
   check_rate(inlet, added.waveform.largest_factor(), options_.dt);
   if (added.with_field) aiming_.check_field("an inlet with the field's velocity");
   if (patch) {
@@ -103,7 +110,8 @@ void Inlets::inject(const std::optional<SampledPart>& part, const std::function<
     const std::uint64_t before = count_up_to(inlet, motion_.steps());
     const std::uint64_t after = count_up_to(inlet, motion_.steps() + 1);
     if (after <= before) continue;
-    Injection injection{{}, after - before, {inlet.velocity, inlet.radius, inlet.user_data, inlet.material}, nullptr, inlet.with_field};
+    Injection injection{
+        {}, after - before, {inlet.velocity, inlet.radius, inlet.user_data, inlet.material}, nullptr, inlet.with_field};
     if (inlet.sampler) {
       inject_at_patch(inlet, injection, add);
       continue;
