@@ -3,7 +3,7 @@
 
 namespace dartcast::detail {
 
-void sample_field(const SampledField& field, const StageParticles& particles, const SamplesOfField& samples,
+void sample_field(const FieldAtPoints& field, const StageParticles& particles, const SamplesOfField& samples,
                   std::span<std::uint8_t> sampled, [[maybe_unused]] InstructionSet set) {
 #if defined(__x86_64__)
   if (set == InstructionSet::avx2) return avx2::sample_field(field, particles, samples, sampled);

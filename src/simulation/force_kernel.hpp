@@ -14,7 +14,7 @@
 namespace dartcast::detail {
 
 /// A field at points, as it is sampled. Arrays hold an entry for each vertex.
-struct SampledField {
+struct FieldAtPoints {
   const Vec3* now = nullptr;
   const Vec3* before = nullptr;   ///< positions before the last move; `now` if nothing moves
   const Vec3* values = nullptr;   ///< at the stage's time
@@ -61,7 +61,7 @@ struct ForceTerms {
 
 /// Samples a field at points. Bit k of sampled[i] is set if this was done for particle 4 i + k: it is left to the caller if
 /// the simplex is a sliver. `sampled`: a byte for each four particles, and for those that remain.
-void sample_field(const SampledField& field, const StageParticles& particles, const SamplesOfField& samples,
+void sample_field(const FieldAtPoints& field, const StageParticles& particles, const SamplesOfField& samples,
                   std::span<std::uint8_t> sampled, InstructionSet set = best_instruction_set());
 
 /// Moves samples by these ways: along the gradient, but by no more than the spread.
@@ -86,7 +86,7 @@ struct HeldMotion {
 void move_held(const HeldMotion& motion, InstructionSet set = best_instruction_set());
 
 namespace portable {
-void sample_field(const SampledField& field, const StageParticles& particles, const SamplesOfField& samples,
+void sample_field(const FieldAtPoints& field, const StageParticles& particles, const SamplesOfField& samples,
                   std::span<std::uint8_t> sampled);
 void shift_samples(const SamplesOfField& samples, std::span<const Vec3> ways);
 void apply_forces(const ForceTerms& terms, const LawParticles& particles, const LawSamples& samples,
@@ -94,7 +94,7 @@ void apply_forces(const ForceTerms& terms, const LawParticles& particles, const 
 void move_held(const HeldMotion& motion);
 }  // namespace portable
 namespace avx2 {
-void sample_field(const SampledField& field, const StageParticles& particles, const SamplesOfField& samples,
+void sample_field(const FieldAtPoints& field, const StageParticles& particles, const SamplesOfField& samples,
                   std::span<std::uint8_t> sampled);
 void shift_samples(const SamplesOfField& samples, std::span<const Vec3> ways);
 void apply_forces(const ForceTerms& terms, const LawParticles& particles, const LawSamples& samples,

@@ -108,7 +108,7 @@ struct WeightGradients {
 
 class FieldKernel {
  public:
-  FieldKernel(const SampledField& field, const StageParticles& particles, const SamplesOfField& samples)
+  FieldKernel(const FieldAtPoints& field, const StageParticles& particles, const SamplesOfField& samples)
       : field_(field), particles_(particles), samples_(samples) {}
 
   // The lanes that were sampled.
@@ -183,7 +183,7 @@ class FieldKernel {
     return field_.moving ? rate - gradient.along(mesh) : rate;
   }
 
-  const SampledField& field_;
+  const FieldAtPoints& field_;
   const StageParticles& particles_;
   const SamplesOfField& samples_;
 };
@@ -329,7 +329,7 @@ class HeldKernel {
 
 }  // namespace
 
-void sample_field(const SampledField& field, const StageParticles& particles, const SamplesOfField& samples,
+void sample_field(const FieldAtPoints& field, const StageParticles& particles, const SamplesOfField& samples,
                   std::span<std::uint8_t> sampled) {
   const FieldKernel kernel(field, particles, samples);
   for (std::size_t i = 0; i < particles.states.size(); i += 4)

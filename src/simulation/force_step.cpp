@@ -261,7 +261,7 @@ void ForceStep::sample(const Segment& segment, const VectorField& field, const P
   }
   const CellComplex& complex = environment_.complex();
   const bool is_fluid = &to == &fluid_;
-  detail::SampledField scene;
+  detail::FieldAtPoints scene;
   scene.now = complex.positions().data();
   scene.before = motion_.deforms() ? complex.previous_positions().data() : scene.now;
   scene.values = field.values(moment).data();

@@ -197,29 +197,21 @@ TEST(SceneFile, EventsAreReadInOrderOfTime) {
   EXPECT_EQ(s.events[3].patch, "xmin");
 }
 
-TEST(SceneFile, AValveIsARegion) {
+TEST(SceneFile, AValveIsARegionOrAPatch) {
   const Scene s = parse_scene(box +
-                                  "[[event]]\nat = 2.0\nkind = 'close'\nregion = 'valve'\nstranded = 'stay'\n"
-                                  "[[event]]\nat = 1.0\nkind = 'open'\nregion = '7'\n",
+                                  "walls = ['leaflet']\n[[event]]\nat = 2.0\nkind = 'close'\nregion = 'valve'\n"
+                                  "stranded = 'stay'\n[[event]]\nat = 1.0\nkind = 'open'\nregion = '7'\n"
+                                  "[[event]]\nat = 3.0\nkind = 'open'\npatch = 'leaflet'\n",
                               "folder/scene.toml");
-  ASSERT_EQ(s.events.size(), 2U);
+  EXPECT_EQ(s.environment.walls, std::vector<std::string>{"leaflet"});
+  ASSERT_EQ(s.events.size(), 3U);
+  EXPECT_TRUE(std::holds_alternative<OpenWalls>(s.events[2].event.what));
+  EXPECT_EQ(s.events[2].patch, "leaflet");
   EXPECT_TRUE(std::holds_alternative<OpenCells>(s.events[0].event.what));
   EXPECT_EQ(s.events[0].region, "7");
   EXPECT_TRUE(std::holds_alternative<CloseCells>(s.events[1].event.what));
   EXPECT_EQ(s.events[1].region, "valve");
   EXPECT_EQ(s.events[1].event.orphaned, OrphanPolicy::hold);
-}
-
-TEST(SceneFile, AValveMayBeAPatch) {
-  const Scene s = parse_scene(box +
-                                  "walls = ['leaflet']\n[[event]]\nat = 2.0\nkind = 'close'\npatch = 'leaflet'\n"
-                                  "[[event]]\nat = 1.0\nkind = 'open'\npatch = 'leaflet'\n",
-                              "folder/scene.toml");
-  EXPECT_EQ(s.environment.walls, std::vector<std::string>{"leaflet"});
-  ASSERT_EQ(s.events.size(), 2U);
-  EXPECT_TRUE(std::holds_alternative<OpenWalls>(s.events[0].event.what));
-  EXPECT_TRUE(std::holds_alternative<CloseWalls>(s.events[1].event.what));
-  EXPECT_EQ(s.events[1].patch, "leaflet");
 }
 
 TEST(SceneFile, EventsThatCannotBeSayWhy) {
