@@ -53,7 +53,7 @@ void ParticleSet::remove(std::span<const std::uint8_t> marks) {
 
 void ParticleSet::remove_rows(std::span<const std::uint8_t> marks) {
   table.remove(marks);
-  count_spheres();
+  if (spheres > 0) count_spheres();
 }
 
 void ParticleSet::count_spheres() {
