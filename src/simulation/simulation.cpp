@@ -143,8 +143,11 @@ void Simulation::set_law(ParticleLaw law) { parts_->particles.aiming().set_law(s
 
 void Simulation::add_inlet(Patch patch, double rate, const Vec3& velocity, double radius,
                            std::span<const double> user_data, const Material& material) {
-  const ParticlesScene group{
-      .velocity = velocity, .radius = radius, .user_data = {user_data.begin(), user_data.end()}, .material = material};
+  ParticlesScene group;
+  group.velocity = velocity;
+  group.radius = radius;
+  group.user_data.assign(user_data.begin(), user_data.end());
+  group.material = material;
   parts_->inlets.add(group, InletParticles{{}, rate}, patch, parts_->particles.sampled_part());
   parts_->motion_of_part = {};
 }
