@@ -135,6 +135,9 @@ SAID = {
     "Simulation::statuses": "uint8 (n,): values of ParticleStatus.",
     "Simulation::contact_counts": "uint32 (n,).",
     "Simulation::radii": "float64 (n,).",
+    "Simulation::diameters": "float64 (n,).",
+    "Simulation::densities": "float64 (n,).",
+    "Simulation::charges_per_mass": "float64 (n,).",
     "Simulation::bodies_step": "The last one.",
     "Simulation::catheter_count": "The number of catheters.",
     "Simulation::solids_step": "A copy of the last step of the solids.",
@@ -186,8 +189,8 @@ CLASSES = {
         "checkpoint restore go_to",
         "long_method": "totals_of_all alive body_summaries solid_summaries catheter_summaries energy audit "
         "state_hash",
-        "property": "particles ids velocities statuses contact_counts radii bodies_step catheter_count "
-        "solids_step statistics statistics_options totals seconds_solids event_log options time steps "
+        "property": "particles ids velocities statuses contact_counts radii diameters densities "
+        "charges_per_mass bodies_step catheter_count solids_step statistics statistics_options totals seconds_solids event_log options time steps "
         "deforms"},
     "SolidSet": {"method": "add remove update_after_edit set_inverse_masses restore checkpoint",
         "long_method": "audit",
@@ -197,7 +200,7 @@ CLASSES = {
         "property": "positions"},
     "Transaction": {"method": "add_vertex set_free note_merged added removed marked merged",
         "property": "created_count"},
-    "VectorField": {"property": "steady values rest"},
+    "VectorField": {"property": "steady rest"},
 }
 CONSTANTS_BY_HAND = {"cell_type_names", "deformation_kinds"}
 HEADERS_BY_HAND = {"storage.hpp"}  # C++ only
