@@ -61,8 +61,8 @@ Scene Plan::scene() const {
   }
   s.environment.mesh = std::move(mesh);
   if (case_[Knob::motion] != 0) s.deformation.push_back({deformation(), {}, {}, {}, 0.0});
-  s.particles.push_back({RandomParticles{60}, velocity(), 0.0, user_data(), material()});
-  if (has_inlet()) s.particles.push_back({InletParticles{door_, 40.0}, {}, 0.0, user_data(), material()});
+  s.particles.push_back({RandomParticles{60}, velocity(), 0.0, user_data(), false, material()});
+  if (has_inlet()) s.particles.push_back({InletParticles{door_, 40.0}, {}, 0.0, user_data(), false, material()});
   s.user_data = o.user_data;
   s.motion.dt = o.dt;
   s.motion.gravity = o.gravity;

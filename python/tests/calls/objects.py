@@ -85,6 +85,10 @@ def of_parts() -> dict[str, object]:
     return {"MeshPart": part, "SharedEnvironment": environment, "SharedParticles": particles}
 
 
+#: They exist during the call of a law alone: simulations.py has them.
+OF_A_LAW = {"LawParticles", "LawSamples", "LawResult"}
+
+
 def living() -> dict[str, object]:
     return of_parts() | of_meshes() | of_edits() | of_particles() | of_solids() | of_simulations()
 
@@ -93,7 +97,7 @@ def calls() -> Calls:
     table: Calls = {}
     objects = living()
     for name, cls in classes().items():
-        if is_record(cls):
+        if is_record(cls) or name in OF_A_LAW:
             continue
         for member, value in vars(cls).items():
             if isinstance(value, property):
