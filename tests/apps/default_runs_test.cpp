@@ -10,6 +10,7 @@
 
 #include "dartcast/generators.hpp"
 #include "dartcast/mesh_files.hpp"
+#include "mesh/cell_types.hpp"
 #include "support/command.hpp"
 #include "support/foam_case.hpp"
 #include "support/simvascular_case.hpp"
@@ -356,6 +357,28 @@ stranded = "stay"
 at = 0.08
 kind = "open"
 region = "lumen"
+)",
+                                               R"([environment]
+mesh = "membrane.vtu"
+walls = ["membrane"]
+[fluid]
+density = 1.2
+viscosity = 1.8e-5
+[[particles]]
+count = 50
+diameter = 1e-4
+density = 1000.0
+charge_per_mass = 0.1
+[motion]
+dt = 0.02
+steps = 6
+forces = ["stokes", "lorentz"]
+electric_field = [10.0, 0.0, 0.0]
+magnetic_field = [0.0, 0.0, 1.0]
+[[event]]
+at = 0.04
+kind = "open"
+patch = "membrane"
 )"};
 
 class DefaultRuns : public test::CommandTest {
@@ -373,6 +396,16 @@ class DefaultRuns : public test::CommandTest {
   // All files that the scenes of the documents name.
   void write_files() const {
     write_mesh(vessel(CellType::hexahedron), folder / "vessel.vtu");
+    write_mesh(vessel(CellType::tetrahedron), folder / "lung.vtu");
+    MeshData halves = vessel(CellType::hexahedron);
+    halves.patch_names[7] = "membrane";
+    for (std::size_t c = 0; c < halves.cell_count(); ++c) {
+      for_each_face(halves, c, [&](std::span<const std::uint32_t> face) {
+        const auto is_middle = [&](std::uint32_t v) { return halves.points[v].x == 0.5; };
+        if (c % 4 == 1 && std::all_of(face.begin(), face.end(), is_middle)) halves.add_patch_face(face, 7);
+      });
+    }
+    write_mesh(halves, folder / "membrane.vtu");
     for (int k = 0; k < 3; ++k) {
       for (const std::string& name : {fmt::format("heart_0{}.vtu", k), fmt::format("frame_00{}.vtu", k)})
         write_mesh(vessel(CellType::prism, 0.1 * k), folder / name);
