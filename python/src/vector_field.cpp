@@ -86,7 +86,8 @@ void bind_members(py::class_<FieldHandle, FieldPointer>& c) {
   property(c, "frame", &VectorField::frame, doc("FieldFrame"));
   property(c, "place", &VectorField::place, doc("FieldPlace"));
   members_of_VectorField(c);
-  property(c, "values", +[](const VectorField& field) { return field.values(); }, doc("VectorField::values"));
+  property(
+      c, "values", +[](const VectorField& field) { return field.values(); }, doc("VectorField::values"));
 }
 
 }  // namespace
