@@ -59,23 +59,23 @@ void Simulation::build(ResolvedScene& scene) {
   }
 }
 
-void Simulation::add(const ParticlesScene& given) {
-  const ParticlesScene group = parts_->completed(given);
+void Simulation::add(const ParticlesScene& group) {
+  const ParticlesScene whole = parts_->completed(group);
   ParticleSystem& particles = parts_->particles;
-  if (const auto* inlet = std::get_if<InletParticles>(&group.source)) {
-    parts_->add_inlet(group, *inlet);
+  if (const auto* inlet = std::get_if<InletParticles>(&whole.source)) {
+    parts_->add_inlet(whole, *inlet);
     parts_->motion_of_part = {};
     return;
   }
-  if (group.with_field) particles.aiming().check_field("particles with the field's velocity");
+  if (whole.with_field) particles.aiming().check_field("particles with the field's velocity");
   const std::size_t first = particles.set().states.size();
-  if (const auto* placed = std::get_if<PlacedParticles>(&group.source)) {
-    add_placed(*this, group, *placed);
+  if (const auto* placed = std::get_if<PlacedParticles>(&whole.source)) {
+    add_placed(*this, whole, *placed);
   } else {
-    add_random(std::get<RandomParticles>(group.source).count, group.velocity, group.radius, group.user_data,
-               group.material);
+    add_random(std::get<RandomParticles>(whole.source).count, whole.velocity, whole.radius, whole.user_data,
+               whole.material);
   }
-  if (group.with_field) particles.aiming().start_with_field(particles.set(), first, time());
+  if (whole.with_field) particles.aiming().start_with_field(particles.set(), first, time());
 }
 
 Simulation::Simulation(const Scene& scene, Threads threads, Ranks* ranks, Partition partition) {
