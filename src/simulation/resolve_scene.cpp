@@ -120,18 +120,17 @@ std::vector<Event> events_of(const Scene& scene, const MeshData& mesh, const Com
   std::vector<Event> events;
   for (const EventScene& e : scene.events) {
     events.push_back(e.event);
-    if (!e.region.empty()) {
-      auto* open = std::get_if<OpenCells>(&events.back().what);
-      auto* close = std::get_if<CloseCells>(&events.back().what);
-      if (open != nullptr) open->cells = cells_of_region(mesh, e.region);
-      if (close != nullptr) close->cells = cells_of_region(mesh, e.region);
-    }
-    auto* open_walls = std::get_if<OpenWalls>(&events.back().what);
-    auto* close_walls = std::get_if<CloseWalls>(&events.back().what);
-    if (open_walls != nullptr && !e.patch.empty()) open_walls->patch = map.patch(e.patch);
-    if (close_walls != nullptr && !e.patch.empty()) close_walls->patch = map.patch(e.patch);
-    auto* reconnect = std::get_if<Reconnect>(&events.back().what);
-    if (reconnect != nullptr && !e.patch.empty()) reconnect->options.side = map.patch(e.patch);
+    std::visit(
+        [&]<class What>(What& what) {
+          if constexpr (requires { what.cells; }) {
+            if (!e.region.empty()) what.cells = cells_of_region(mesh, e.region);
+          } else if constexpr (requires { what.patch; }) {
+            if (!e.patch.empty()) what.patch = map.patch(e.patch);
+          } else if constexpr (requires { what.options.side; }) {
+            if (!e.patch.empty()) what.options.side = map.patch(e.patch);
+          }
+        },
+        events.back().what);
   }
   return events;
 }
@@ -139,7 +138,8 @@ std::vector<Event> events_of(const Scene& scene, const MeshData& mesh, const Com
 // The mesh of a scene that has been loaded is taken as it is.
 bool is_ready(const EnvironmentScene& scene) {
   return std::holds_alternative<MeshData>(scene.mesh) && scene.scale == 1.0 && !scene.skip_bad_cells &&
-         std::holds_alternative<std::monostate>(scene.free) && std::holds_alternative<std::monostate>(scene.patches);
+         scene.walls.empty() && std::holds_alternative<std::monostate>(scene.free) &&
+         std::holds_alternative<std::monostate>(scene.patches);
 }
 
 void resolve_on(const MeshData& mesh, const Scene& scene, Threads threads, ResolvedScene& resolved) {

@@ -40,6 +40,8 @@ TEST(PatchWalls, APatchThatIsNamedHasAWall) {
     loaded.environment.patches = {};
     loaded.environment.mesh = mesh;
     EXPECT_EQ(test::error_text([&] { const Simulation s(loaded); }).empty(), text.find("patches") != std::string::npos);
+    loaded.environment.walls = {"membrane"};
+    EXPECT_EQ(inner_walls(Simulation(loaded).environment().map()).size(), 2U);
     const std::string blocked =
         std::regex_replace(text, std::regex("'a.vtu'\n"), "'a.vtu'\nfree = { region = ['left'] }\n");
     EXPECT_NO_THROW(const Simulation s(load_scene_files(scene(blocked)).scene)) << blocked;
