@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -43,8 +44,12 @@ class KeptRuns {
   }
 
  private:
-  // The first item from here on that is marked, or is not.
+  // The first item from here on that is marked, or is not. Few are marked: eight marks are looked at together.
   static std::size_t next(std::span<const std::uint8_t> marks, std::size_t from, bool marked) {
+    for (std::uint64_t eight = 0; marked && from + sizeof eight <= marks.size(); from += sizeof eight) {
+      std::memcpy(&eight, &marks[from], sizeof eight);
+      if (eight != 0) break;
+    }
     while (from < marks.size() && (marks[from] != 0) != marked) ++from;
     return from;
   }

@@ -28,9 +28,9 @@ TEST(KeptRuns, KeepsWhatIsNotMarked) {
   expect_kept({1, 0, 1, 1, 0, 0});
   expect_kept({0, 2, 0});
   Random random(1);
-  for (int round = 0; round < 100; ++round) {
-    std::vector<std::uint8_t> marks(random.below(40));
-    for (std::uint8_t& mark : marks) mark = random.below(3) == 0 ? 1 : 0;
+  for (std::uint32_t round = 0; round < 200; ++round) {  // many marked, and few
+    std::vector<std::uint8_t> marks(random.below(100));
+    for (std::uint8_t& mark : marks) mark = random.below(3 + 40 * (round % 2)) == 0 ? 1 : 0;
     expect_kept(marks);
   }
 }
