@@ -11,6 +11,7 @@
 #include "dartcast/mesh_part.hpp"
 #include "support/expectations.hpp"
 #include "support/meshes.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::point_weights_test {
 
@@ -94,7 +95,7 @@ TEST(PointWeights, SecondOrder) {
   const auto smooth = [](const Vec3& x) { return std::sin(3.0 * x.x) * std::cos(2.0 * x.y) + x.z * x.z; };
   for (unsigned kind = 0; kind < test::box_kinds.size(); ++kind) {
     std::vector<double> errors;
-    for (const std::uint32_t n : {6U, 12U, 24U}) {
+    for (std::uint32_t n = 6; n <= (test::sanitized() ? 12U : 24U); n *= 2) {
       const MeshData mesh = generate_box(box_of(kind, n));
       const std::vector<double> values = from_cells(mesh, smooth);
       double sum = 0.0;
@@ -106,8 +107,7 @@ TEST(PointWeights, SecondOrder) {
       }
       errors.push_back(sum / count);
     }
-    EXPECT_GT(std::log2(errors[0] / errors[1]), 1.85) << kind;
-    EXPECT_GT(std::log2(errors[1] / errors[2]), 1.85) << kind;
+    for (std::size_t k = 1; k < errors.size(); ++k) EXPECT_GT(std::log2(errors[k - 1] / errors[k]), 1.85) << kind;
   }
 }
 
