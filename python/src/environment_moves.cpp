@@ -7,6 +7,7 @@
 #include "dartcast/validity.hpp"
 #include "support/environments.hpp"
 #include "support/members.hpp"
+#include "support/pickles.hpp"
 #include "support/rows.hpp"
 
 namespace py = pybind11;
@@ -123,6 +124,8 @@ void bind_next_points(py::module_& m, EnvironmentClass& c) {
 }  // namespace
 
 void bind(py::module_& m, EnvironmentClass& c) {
+  auto report = class_of<UpdateReport>();
+  pickle_by_bytes(report, [](UpdateReport& r) { return std::tie(r.touched, r.located, r.orphaned); });
   bind_next_points(m, c);
   c.def("move", &move, py::arg("points"),
         "Copies new positions of all the mesh's points, float64 (n, 3), and makes them current. Every set of particles "

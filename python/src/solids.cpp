@@ -5,6 +5,7 @@
 
 #include "bind.hpp"
 #include "bodies_handle.hpp"
+#include "support/pickles.hpp"
 #include "support/rows.hpp"
 
 namespace py = pybind11;
@@ -46,9 +47,10 @@ SolidMesh make_mesh(const Typed<"Points">& points, const Typed<"Integers | Seque
 }
 
 void bind_mesh(py::module_& m) {
-  py::class_<SolidMesh>(m, "SolidMesh", doc("SolidMesh"))
-      .def(py::init(&make_mesh), py::arg("points"), py::arg("edges") = py::none(), py::arg("triangles") = py::none(),
-           "points: float64 (n, 3). edges: whole numbers (n, 2). triangles: whole numbers (n, 3).")
+  py::class_<SolidMesh> c(m, "SolidMesh", doc("SolidMesh"));
+  pickle_by_bytes(c, [](SolidMesh& s) { return std::tie(s.points, s.edges, s.triangles); });
+  c.def(py::init(&make_mesh), py::arg("points"), py::arg("edges") = py::none(), py::arg("triangles") = py::none(),
+        "points: float64 (n, 3). edges: whole numbers (n, 2). triangles: whole numbers (n, 3).")
       .def_property_readonly(
           "points", [](const SolidMesh& s) { return array_of(std::span<const Vec3>(s.points)); },
           "A copy: float64 (n, 3).")
@@ -61,8 +63,9 @@ void bind_mesh(py::module_& m) {
 }
 
 void bind_records(py::module_& m) {
-  py::class_<SolidPlacement>(m, "SolidPlacement", doc("SolidPlacement"))
-      .def_readonly("refusal", &SolidPlacement::refusal, "Why the place is refused; NONE: it is not.")
+  py::class_<SolidPlacement> c(m, "SolidPlacement", doc("SolidPlacement"));
+  pickle_by_bytes(c, [](SolidPlacement& p) { return std::tie(p); });
+  c.def_readonly("refusal", &SolidPlacement::refusal, "Why the place is refused; NONE: it is not.")
       .def_property_readonly(
           "solid",
           [](const SolidPlacement& p) { return p.solid == 0xffffffffU ? std::nullopt : std::optional(p.solid); },

@@ -3,6 +3,7 @@
 
 #include "bind.hpp"
 #include "support/map_checks.hpp"
+#include "support/pickles.hpp"
 #include "support/python.hpp"
 #include "support/rows.hpp"
 
@@ -56,6 +57,8 @@ void bind_step_report(py::module_& m) {
       "relative to the wall).");
   c.def_property_readonly(
       "counters", [](const StepReport& r) { return r.counters; }, doc("Counters"));
+  pickle_by_bytes(
+      c, [](StepReport& r) { return std::tie(r.contacts.contacts, r.contacts.walls, r.held, r.stopped, r.counters); });
 }
 
 void bind_trace(py::module_& m) {

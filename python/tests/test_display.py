@@ -11,6 +11,8 @@ import dartcast as dc
 import numpy as np
 import pytest
 
+from calls import classes, is_record
+
 
 def simulation() -> dc.Simulation:
     made = dc.Simulation(dc.Environment(dc.generate_bar()), dc.SimulationOptions(dt=0.1, response=dc.Reflect(0.5)))
@@ -103,6 +105,27 @@ def test_particles_from_a_pickle_are_the_same_and_move_as_the_same() -> None:
     first, second = environment.advance(particles, target), environment.advance(restored, target)
     assert np.array_equal(particles.states, restored.states) and np.array_equal(first.contacts, second.contacts)
     assert len(pickle.loads(pickle.dumps(dc.Particles()))) == 0
+
+
+def test_reports_from_a_pickle_are_the_same() -> None:
+    environment = dc.Environment(dc.generate_bar())
+    particles = environment.add_random(100, seed=5)
+    report = environment.advance(particles, particles.positions + [0.7, 0.3, 9.0])
+    again = pickle.loads(pickle.dumps(report))
+    assert len(report.contacts) > 0 and again.counters == report.counters
+    for rows in ("contacts", "walls", "held", "stopped"):
+        assert np.array_equal(getattr(again, rows), getattr(report, rows))
+    solid = dc.records.SolidMesh([[0, 0, 0], [1, 0, 0]], edges=[[0, 1]])
+    for mesh in (pickle.loads(pickle.dumps(solid)), pickle.loads(pickle.dumps(dc.BodyOptions(surface=solid))).surface):
+        assert np.array_equal(mesh.points, solid.points) and np.array_equal(mesh.edges, solid.edges)
+    with pytest.raises(dc.InvalidArgument, match="of another version"):
+        type(report).__new__(type(report)).__setstate__((b"", b"1", b"", b"", b""))
+
+
+def test_all_records_can_be_pickled() -> None:
+    for name, cls in classes().items():
+        if is_record(cls):
+            assert type(pickle.loads(pickle.dumps(cls()))) is cls, name
 
 
 def test_states_without_their_weights_are_refused() -> None:

@@ -1,6 +1,8 @@
 """Properties of living objects, and classes that Python cannot construct."""
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 
 import dartcast as dc
@@ -99,6 +101,9 @@ def calls() -> Calls:
     for name, cls in classes().items():
         if is_record(cls) or name in OF_A_LAW:
             continue
+        if "__setstate__" in vars(cls):
+            for member in ("__getstate__", "__setstate__"):
+                table[f"{name}.{member}"] = lambda o=objects[name]: pickle.loads(pickle.dumps(o))
         for member, value in vars(cls).items():
             if isinstance(value, property):
                 table[f"{name}.{member}"] = lambda o=objects[name], m=member: getattr(o, m)
