@@ -14,7 +14,8 @@ import { open } from './tests/page_checks.mjs';
 const margin = 14; // pixels around what is drawn
 const mostBytes = 2_000_000; // of a moving picture
 
-// `at`: the moment, as a share of the run. `walls`: how patches are drawn; others as the viewer does. `from`: the direction
+// `at`: the moment, as a share of the run, or several. `part`: left, top, right and bottom of what is shown, as shares of what
+// is drawn. `walls`: how patches are drawn; others as the viewer does. `from`: the direction
 // that the camera looks from; `up`: the one that is up. `wallNames`: whether the legend has them. `scheme`: light, if not given. `moving`: the number of frames, and their width.
 const pictures = [
   {
@@ -40,6 +41,10 @@ const pictures = [
   },
   { name: 'pipe', scenes: ['pipe'], at: 0.75, colour: 'speed', width: 800, byName: true, caption: 'Particles in a pipe of OpenFOAM that moves, coloured by speed' },
   { name: 'contraction', scenes: ['contraction'], at: 0.5, colour: 'speed', width: 800, byName: true, caption: 'Grains in a vessel that contracts in waves, coloured by speed' },
+  {
+    name: 'forceps', scenes: ['forceps'], at: [0.25, 0.55, 0.85], width: 1500, part: [0.4, 0.58, 0.6, 1], from: [0, -0.88, 0.47], up: [0, 0.47, 0.88],
+    caption: 'A forceps goes in closed, opens until its jaws meet the wall, and closes again',
+  },
   { name: 'catheter', scenes: ['catheter_left', 'catheter_right'], at: 1, width: 520, wallNames: true, caption: 'A catheter, steered into the left and into the right branch' },
 ];
 
@@ -102,6 +107,9 @@ const inkBox = (page, frame) => page.evaluate((f) => {
 
 const union = (boxes) => [0, 1, 2, 3].map((k) => (k < 2 ? Math.min : Math.max)(...boxes.map((b) => b[k])));
 
+const partOf = ([left, top, right, bottom], part = [0, 0, 1, 1]) =>
+  part.map((share, i) => (i % 2 === 0 ? left + share * (right - left) : top + share * (bottom - top)));
+
 /** A frame as a PNG, cut to a box. */
 async function shot(page, frame, box) {
   await page.evaluate((f) => {
@@ -152,8 +160,10 @@ async function still(browser, files, picture) {
     const { page } = await open(browser, file, { colorScheme: picture.scheme ?? 'light' });
     await prepare(page, picture);
     const last = await page.evaluate(() => window.dartcastReport.viewer.data.frames.length - 1);
-    const frame = Math.round(picture.at * last);
-    pieces.push(await shot(page, frame, await inkBox(page, frame)));
+    for (const at of [picture.at].flat()) {
+      const frame = Math.round(at * last);
+      pieces.push(await shot(page, frame, partOf(await inkBox(page, frame), picture.part)));
+    }
     legend = await legendOf(page, picture.wallNames);
     await page.close();
   }
