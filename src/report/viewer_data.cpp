@@ -329,7 +329,7 @@ class Builder {
     out["kind"] = block(kind);
     out["point"] = block(point);
     if (kept_every > 1)
-      data_.taken.notes.push_back(fmt::format("of {} contacts those of one particle in {} are in the report",
+      data_.taken.notes.push_back(fmt::format("Of {} contacts, the report has those of one particle in {}.",
                                               grouped(all), grouped(kept_every)));
   }
 

@@ -28,10 +28,10 @@ constexpr std::size_t most_frames = 65535;  // 16 bits number them
 
 void add_notes(ReportSummary& taken) {
   if (taken.particles < taken.particles_of_run)
-    taken.notes.push_back(fmt::format("{} of {} particles are in the report, evenly chosen", grouped(taken.particles),
+    taken.notes.push_back(fmt::format("The report has {} of {} particles, evenly chosen.", grouped(taken.particles),
                                       grouped(taken.particles_of_run)));
   if (taken.frames < taken.frames_recorded)
-    taken.notes.push_back(fmt::format("{} of {} frames are in the report, evenly chosen", grouped(taken.frames),
+    taken.notes.push_back(fmt::format("The report has {} of {} frames, evenly chosen.", grouped(taken.frames),
                                       grouped(taken.frames_recorded)));
 }
 
@@ -73,7 +73,7 @@ ReportSummary write_report(const fs::path& run_folder, const ReportOptions& opti
   for (bool reduced = false;; reduced = true) {
     ViewerData data = viewer_data(file, now, gravity);
     if (reduced)
-      data.taken.notes.push_back(fmt::format("with {} particles and {} frames the report would have more than {} MB",
+      data.taken.notes.push_back(fmt::format("With {} particles and {} frames, the report would have more than {} MB.",
                                              grouped(options.particles), grouped(options.frames),
                                              static_cast<double>(options.bytes) / 1e6));
     add_notes(data.taken);

@@ -400,7 +400,7 @@ TEST_F(Report, ContactsThatAreLeftOutAreCounted) {
   ASSERT_LT(all, 500'000U);
   ASSERT_EQ(summary.report->notes.size(), 1U);
   EXPECT_EQ(summary.report->notes.front(),
-            fmt::format("of {},{:03} contacts those of one particle in 2 are in the report", all / 1000, all % 1000));
+            fmt::format("Of {},{:03} contacts, the report has those of one particle in 2.", all / 1000, all % 1000));
 }
 
 // A recording that was cut off or changed is read as far as it makes sense, or refused: nothing worse.
