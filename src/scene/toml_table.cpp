@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 #include "base/closest_word.hpp"
 #include "dartcast/error.hpp"
@@ -16,10 +15,13 @@ namespace dartcast {
 
 namespace {
 
-std::string type_name(const toml::node& node) {
-  std::ostringstream text;
-  text << node.type();
-  return text.str();
+std::string_view type_name(const toml::node& node) {
+  if (node.is_string()) return "a text";
+  if (node.is_integer()) return "a whole number";
+  if (node.is_floating_point()) return "a number";
+  if (node.is_boolean()) return "true or false";
+  if (node.is_array()) return "a list";
+  return node.is_table() ? "a table" : "a date or a time";
 }
 
 }  // namespace
@@ -52,7 +54,7 @@ bool TomlTable::is_text(std::string_view key) {
 
 double TomlTable::number(std::string_view key, const toml::node& node) const {
   const auto value = node.value<double>();
-  if (!value || node.is_boolean()) fail(key, fmt::format("{} must be a number; here is a {}", key, type_name(node)));
+  if (!value || node.is_boolean()) fail(key, fmt::format("{} must be a number; here is {}", key, type_name(node)));
   if (!std::isfinite(*value)) fail(key, fmt::format("{} must be finite", key));
   return *value;
 }
@@ -73,7 +75,7 @@ bool TomlTable::get(std::string_view key, double& value, Range range) {
 bool TomlTable::get(std::string_view key, bool& value) {
   const toml::node* node = find(key);
   if (node == nullptr) return false;
-  if (!node->is_boolean()) fail(key, fmt::format("{} must be true or false; here is a {}", key, type_name(*node)));
+  if (!node->is_boolean()) fail(key, fmt::format("{} must be true or false; here is {}", key, type_name(*node)));
   value = node->as_boolean()->get();
   return true;
 }
@@ -81,7 +83,7 @@ bool TomlTable::get(std::string_view key, bool& value) {
 bool TomlTable::get(std::string_view key, std::string& value) {
   const toml::node* node = find(key);
   if (node == nullptr) return false;
-  if (!node->is_string()) fail(key, fmt::format("{} must be a text in quotes; here is a {}", key, type_name(*node)));
+  if (!node->is_string()) fail(key, fmt::format("{} must be a text in quotes; here is {}", key, type_name(*node)));
   value = node->as_string()->get();
   if (value.empty()) fail(key, fmt::format("{} is empty: leave it out, or name something", key));
   return true;
@@ -98,7 +100,7 @@ bool TomlTable::get(std::string_view key, std::vector<Vec3>& value) {
   const toml::node* node = find(key);
   if (node == nullptr) return false;
   const toml::array* list = node->as_array();
-  if (list == nullptr) fail(key, fmt::format("{} must be a list of points; here is a {}", key, type_name(*node)));
+  if (list == nullptr) fail(key, fmt::format("{} must be a list of points; here is {}", key, type_name(*node)));
   value.clear();
   for (const toml::node& item : *list) {
     const toml::array* point = item.as_array();
@@ -112,7 +114,7 @@ bool TomlTable::get(std::string_view key, std::vector<Vec3>& value) {
 bool TomlTable::get(std::string_view key, std::uint64_t& value, std::uint64_t low, std::uint64_t high) {
   const toml::node* node = find(key);
   if (node == nullptr) return false;
-  if (!node->is_integer()) fail(key, fmt::format("{} must be a whole number; here is a {}", key, type_name(*node)));
+  if (!node->is_integer()) fail(key, fmt::format("{} must be a whole number; here is {}", key, type_name(*node)));
   const std::int64_t x = node->as_integer()->get();
   if (x < 0 || static_cast<std::uint64_t>(x) < low || static_cast<std::uint64_t>(x) > high) {
     fail(key, fmt::format("{} = {}: it must be between {} and {}", key, x, low, high));
@@ -135,10 +137,10 @@ bool TomlTable::get(std::string_view key, std::vector<std::string>& value) {
     value = {node->as_string()->get()};
     return true;
   }
-  if (!node->is_array()) fail(key, fmt::format("{} must be a list of texts; here is a {}", key, type_name(*node)));
+  if (!node->is_array()) fail(key, fmt::format("{} must be a list of texts; here is {}", key, type_name(*node)));
   value.clear();
   for (const toml::node& item : *node->as_array()) {
-    if (!item.is_string()) fail(key, fmt::format("{} must be a list of texts; a {} is in it", key, type_name(item)));
+    if (!item.is_string()) fail(key, fmt::format("{} must be a list of texts; {} is in it", key, type_name(item)));
     value.push_back(item.as_string()->get());
   }
   return true;
@@ -153,7 +155,7 @@ bool TomlTable::get(std::string_view key, std::vector<double>& value, std::size_
   } else if (count <= 1) {
     value.push_back(number(key, *node));
   } else {
-    fail(key, fmt::format("{} must be a list of {} numbers; here is a {}", key, count, type_name(*node)));
+    fail(key, fmt::format("{} must be a list of {} numbers; here is {}", key, count, type_name(*node)));
   }
   if (count != 0 && value.size() != count)
     fail(key, fmt::format("{} must have {} numbers; it has {}", key, count, value.size()));
@@ -189,7 +191,7 @@ TomlTable TomlTable::table(std::string_view key) {
   const std::string name =
       name_.empty() ? fmt::format("[{}]", key) : fmt::format("[{}.{}]", name_.substr(1, name_.size() - 2), key);
   if (node == nullptr) return {nothing, file_, name};
-  if (!node->is_table()) fail(key, fmt::format("{} must be a table: {}; here is a {}", key, name, type_name(*node)));
+  if (!node->is_table()) fail(key, fmt::format("{} must be a table: {}; here is {}", key, name, type_name(*node)));
   return {*node->as_table(), file_, name};
 }
 
@@ -208,7 +210,7 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key) {
     }
     return result;
   }
-  fail(key, fmt::format("{} must be tables: {}; here is a {}", key, name, type_name(*node)));
+  fail(key, fmt::format("{} must be tables: {}; here is {}", key, name, type_name(*node)));
 }
 
 std::vector<std::string> TomlTable::keys() const {
