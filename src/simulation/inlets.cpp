@@ -89,8 +89,11 @@ void Inlets::add(const ParticlesScene& group, const InletParticles& inlet, std::
     if (by_flux) throw InvalidArgument("simulation: an inlet by flux needs a patch, not a cone");
     if (!inlet.patch.empty()) throw InvalidArgument("simulation: give an inlet either a patch or a cone, not both");
     check_cone(*inlet.cone, environment_.map().dimension());
-    if (PointSampler(environment_, inlet.cone->at, part).empty())
-      throw InvalidArgument("simulation: a cone's point is in no free cell");
+    const Vec3& at = inlet.cone->at;
+    if (PointSampler(environment_, at, part).empty())
+      throw InvalidArgument(
+          fmt::format("simulation: the cone's point ({}, {}, {}) is in no free cell: is it in the unit of the mesh?",
+                      at.x, at.y, at.z));
   }
   inlets_.push_back(std::move(added));
 }

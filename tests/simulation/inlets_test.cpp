@@ -408,7 +408,7 @@ TEST(Inlets, WhatIsRefused) {
   expect(with([](auto& i) { i.cone->outer = 5.0; }), {"angles", "outer"});
   expect(with([](auto& i) { i.cone->axis = {}; }), {"axis"});
   expect(with([](auto& i) { i.cone->speed = -1.0; }), {"speed"});
-  expect(with([](auto& i) { i.cone->at = {5, 5, 5}; }), {"no free cell"});
+  expect(with([](auto& i) { i.cone->at = {5, 5, 5}; }), {"(5, 5, 5)", "no free cell"});
   expect(with([](auto& i) { i.patch = "xmin"; }), {"either a patch or a cone"});
   expect(with([](auto& i) { i.burst_times = {-1.0}; }), {"burst", "-1"});
   expect(with([](auto& i) { i.rate = 1e300; }), {"rate"});
