@@ -414,6 +414,26 @@ TEST_F(OpenFoamScene, PatchValuesOfProcessors) {
   EXPECT_EQ(load(text).motion.field.samples.read(0), expected);
 }
 
+// Patterns come from files of others: none may take the stack, or a time that grows faster than the name.
+TEST_F(OpenFoamScene, HostilePatternsOfPatches) {
+  const MeshData mesh = box();
+  auto whole = test::foam_mesh(mesh);
+  whole.patches.back().name = std::string(100000, 'a');
+  FoamWriter(folder_ / "case", {}).write(whole);
+  std::vector<Vec3> cells(mesh.cell_count(), {1, 2, 3});
+  const auto values = [&](const std::string& pattern) {
+    FoamWriter(folder_ / "case", {})
+        .file("1/U", "volVectorField",
+              "internalField " + vector_list(cells) + ";\nboundaryField { \"" + pattern + "\" { type noSlip; } }\n");
+    return load("[motion]\nfield = { array = 'U', files = 'case' }\n").motion.field.samples.read(0);
+  };
+  const std::vector<Vec3> without = values("none");
+  EXPECT_NE(values("(a*)*"), without);
+  for (const std::string& pattern : {std::string("(a*)*b"), std::string("(a|a)*b"), std::string("(a*)\\1"),
+                                     std::string("((a{99}){99}){99}"), std::string("(a"), std::string(300, 'a')})
+    EXPECT_EQ(values(pattern), without) << pattern;
+}
+
 TEST_F(OpenFoamScene, PointsOfPartsAtATime) {
   const MeshData mesh = box();
   std::vector<std::size_t> part(mesh.cell_count(), 0);

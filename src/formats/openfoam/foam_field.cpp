@@ -3,9 +3,10 @@
 #include "formats/openfoam/foam_field.hpp"
 
 #include <fmt/format.h>
+#include <regex.h>
 
 #include <algorithm>
-#include <regex>
+#include <cctype>
 #include <string>
 #include <utility>
 
@@ -113,12 +114,20 @@ PatchEntryValues read_patch_entry(FoamFile& file, std::size_t components, const 
   return entry;
 }
 
+// By POSIX, whose patterns take a time in proportion to the name if they have no back references; counts in braces take
+// memory by their product. A long name or a hostile pattern overflows the stack of std::regex, or takes it for ever.
 bool matches(const std::string& pattern, const std::string& name) {
-  try {
-    return std::regex_match(name, std::regex(pattern, std::regex::extended));
-  } catch (const std::regex_error&) {
-    return false;
-  }
+  const auto refers_back = [&](std::size_t i) {
+    return pattern[i] == '\\' && std::isdigit(static_cast<unsigned char>(pattern[i + 1])) != 0;
+  };
+  if (pattern.size() > 255 || pattern.find('{') != std::string::npos) return false;
+  for (std::size_t i = 0; i < pattern.size(); ++i)
+    if (refers_back(i)) return false;
+  regex_t compiled;
+  if (regcomp(&compiled, ("^(" + pattern + ")$").c_str(), REG_EXTENDED | REG_NOSUB) != 0) return false;
+  const bool found = regexec(&compiled, name.c_str(), 0, nullptr, 0) == 0;
+  regfree(&compiled);
+  return found;
 }
 
 // By name; else by the last pattern that matches.
