@@ -33,18 +33,20 @@ export class Overlay {
   }
 
   update() {
-    const { camera, canvas } = this.stage;
+    const { camera } = this.stage;
     camera.updateMatrixWorld();
     for (const [k, arm] of this.arms.entries()) arm.at.setComponent(k, 1).setComponent((k + 1) % 3, 0).setComponent((k + 2) % 3, 0).transformDirection(camera.matrixWorldInverse);
-    // Nearer arms lie over those behind.
-    this.axes.replaceChildren(...[...this.arms].sort((a, b) => a.at.z - b.at.z).flatMap(({ line, label, at }) => {
+    for (const { line, label, at } of this.arms) {
       line.setAttribute('x2', 22 * at.x);
       line.setAttribute('y2', -22 * at.y);
       label.setAttribute('x', 30 * at.x);
       label.setAttribute('y', -30 * at.y);
-      return [line, label];
-    }));
-    const perPixel = this.stage.heightAtTarget / Math.max(canvas.clientHeight, 1);
+    }
+    // Nearer arms lie over those behind.
+    const order = [...this.arms].sort((a, b) => a.at.z - b.at.z);
+    if (order.some((arm, k) => arm !== this.order?.[k])) this.axes.replaceChildren(...order.flatMap(({ line, label }) => [line, label]));
+    this.order = order;
+    const perPixel = this.stage.heightAtTarget / Math.max(this.stage.height, 1);
     const most = 110 * perPixel;
     const unit = 10 ** Math.floor(Math.log10(most));
     this.measure = [5, 2, 1].find((m) => m * unit <= most) * unit;

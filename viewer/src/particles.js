@@ -300,6 +300,7 @@ export class ParticleCloud {
     u.threshold.value.set(...(q.categories ? [-most, most] : this.threshold.map((x) => Math.max(-most, Math.min(most, x * q.perUnit)))));
     u.luminance.value = page.luminance;
     u.isDark.value = page.isDark;
+    u.seen.value = page.isDark ? 0.55 : 0.42;
   }
 
   /** Shows a moment, a frame's number with a part of the way to the next one. */
@@ -339,16 +340,15 @@ export class ParticleCloud {
     u.orthographic.value = camera.isOrthographicCamera ? 1 : 0;
     u.perUnit.value = (canvas.height * camera.projectionMatrix.elements[5]) / 2;
     // So large that ten thousand are a cloud and a hundred are beads; smaller on small screens.
-    const room = Math.sqrt((canvas.clientWidth * canvas.clientHeight) / 7e5);
+    const room = Math.sqrt((stage.width * stage.height) / 7e5);
     const wanted = Math.max(4.2, Math.min(11, 110 / Math.sqrt(Math.max(this.count, 1)) + 4)) * Math.max(0.55, Math.min(1.4, room)) * this.scale;
-    u.diameter.value = (wanted * (stage.framedHeight || stage.heightAtTarget)) / Math.max(canvas.clientHeight, 1);
+    u.diameter.value = (wanted * (stage.framedHeight || stage.heightAtTarget)) / Math.max(stage.height, 1);
     u.pixels.value.set(2.5 * pixelRatio * Math.min(1, this.scale), 64 * pixelRatio);
     u.ringPixels.value = 0.8 * pixelRatio;
     u.wallDepth.value = wallDepth;
     u.hidesBehindWalls.value = wallDepth !== null;
     u.screen.value.set(canvas.width, canvas.height);
     u.width.value = 0.55 * wanted * pixelRatio;
-    u.seen.value = pageColours().isDark ? 0.55 : 0.42;
   }
 
   /** The particles that are there now: slots, and places one after another. */
