@@ -74,11 +74,14 @@ def _plain(scene: SceneLike) -> _core.Scene:
     return _core.read_scene(pathlib.Path(scene))
 
 
+Stage = Callable[[str], None]
+
+
 @contextlib.contextmanager
-def _shown(progress: Union[bool, Progress, None]) -> Iterator[Optional[Progress]]:
-    """The function for run_scene(): that of the caller, or one that moves a bar."""
+def _shown(progress: Union[bool, Progress, None]) -> Iterator[tuple[Optional[Progress], Optional[Stage]]]:
+    """The functions for run_scene(): that of the caller, or those that move a bar and say what comes before it."""
     if progress is not True:
-        yield None if progress is False else progress
+        yield None if progress is False else progress, None
         return
     with warnings.catch_warnings():  # tqdm warns in notebooks that have no widgets, and shows a text
         warnings.simplefilter("ignore")
@@ -92,12 +95,20 @@ def _shown(progress: Union[bool, Progress, None]) -> Iterator[Optional[Progress]
         nonlocal last
         if bar is not None:
             bar.total = all_
+            if bar.desc:
+                bar.set_description(refresh=False)
             bar.update(done - bar.n)
         elif done == all_ or time.monotonic() - last > 0.2:
             last = time.monotonic()
-            print(f"\r{done:,} of {all_:,} steps ({done / all_:.0%})", end="", file=sys.stderr, flush=True)
+            print(f"\r{done:,} of {all_:,} steps ({done / all_:.0%})\x1b[K", end="", file=sys.stderr, flush=True)
+
+    def enter(stage: str) -> None:
+        if bar is not None:
+            bar.set_description(stage)
+        else:
+            print(f"\r{stage}\x1b[K", end="", file=sys.stderr, flush=True)
     try:
-        yield show
+        yield show, enter
     finally:
         print(file=sys.stderr) if bar is None else bar.close()
 
@@ -109,7 +120,8 @@ def run(scene: SceneLike, out: Union[str, "os.PathLike[str]", None] = None, *, t
     """Runs a scene: a .toml file, a dict with the keys of docs/scene.md, or a Scene.
 
     out: the folder for frames and summary.json; None: nothing is written. The other arguments are those of RunOptions.
-    progress: a function as in run_scene(); True: a bar of tqdm, or a line on stderr if tqdm is missing. Ctrl-C ends the run between two steps, and resume=True goes on from there. ranks: the
+    progress: a function as in run_scene(); True: a bar of tqdm, or a line on stderr if tqdm is missing, which also says
+    what is done before the first step. Ctrl-C ends the run between two steps, and resume=True goes on from there. ranks: the
     processes that share the run, as mpi_ranks(); all call run() with the same arguments, and the first returns the
     summary of all. partition: "particles" or "cells". Raises as run_scene().
     """
@@ -117,5 +129,5 @@ def run(scene: SceneLike, out: Union[str, "os.PathLike[str]", None] = None, *, t
                                skip_bad_cells=skip_bad_cells, max_memory=max_memory, partition=partition)
     if out is not None:
         options.folder = pathlib.Path(out)
-    with _shown(progress) as show:
-        return _core.run_scene(_plain(scene), options, show, ranks)
+    with _shown(progress) as (show, enter):
+        return _core.run_scene(_plain(scene), options, show, ranks, enter)

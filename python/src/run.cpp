@@ -4,6 +4,8 @@
 #include <chrono>
 #include <exception>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "bind.hpp"
@@ -19,12 +21,15 @@ namespace {
 // Asks Python after each step whether to go on. An exception cancels the run, whose output is then complete.
 class Asking {
  public:
-  explicit Asking(py::object progress) : progress_(std::move(progress)) {
+  Asking(py::object progress, py::object on_stage) : progress_(std::move(progress)), on_stage_(std::move(on_stage)) {
     if (!progress_.is_none() && PyCallable_Check(progress_.ptr()) == 0)
       throw py::type_error("progress: expected a function of the number of steps done and of all");
+    if (!on_stage_.is_none() && PyCallable_Check(on_stage_.ptr()) == 0)
+      throw py::type_error("on_stage: expected a function of a text");
   }
 
   bool operator()(std::uint64_t done, std::uint64_t all) {
+    if (raised_) return false;
     if (progress_.is_none() && !is_due()) return true;
     const py::gil_scoped_acquire acquire;
     try {
@@ -35,6 +40,16 @@ class Asking {
       return false;
     }
   }
+  /// A stage before the first step; an exception ends the run there.
+  void enter(std::string_view stage) {
+    const py::gil_scoped_acquire acquire;
+    try {
+      if (!raised_) on_stage_(std::string(stage));
+    } catch (...) {
+      raised_ = std::current_exception();
+    }
+  }
+  [[nodiscard]] bool wants_stages() const { return !on_stage_.is_none(); }
   /// To be called with Python's lock.
   void rethrow() const {
     if (raised_) std::rethrow_exception(raised_);
@@ -50,7 +65,7 @@ class Asking {
     return true;
   }
 
-  py::object progress_;
+  py::object progress_, on_stage_;
   std::exception_ptr raised_;
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
@@ -68,12 +83,14 @@ Summary run_shared(const Scene& scene, const RunOptions& options, Asking& asking
 }
 
 Summary run(const Scene& scene, const RunOptions& options,
-            const Typed<"Callable[[int, int], bool | None] | None">& progress, const Typed<"Ranks | None">& ranks) {
+            const Typed<"Callable[[int, int], bool | None] | None">& progress, const Typed<"Ranks | None">& ranks,
+            const Typed<"Callable[[str], None] | None">& on_stage) {
   const Scene own_scene = scene;
   RunOptions own_options = options;
   std::optional<PythonRanks> shared;
   if (!ranks.is_none()) own_options.ranks = &shared.emplace(ranks);
-  Asking asking(progress);
+  Asking asking(progress, on_stage);
+  if (asking.wants_stages()) own_options.on_stage = [&](std::string_view stage) { asking.enter(stage); };
   Summary summary;
   {
     const py::gil_scoped_release release;
@@ -86,14 +103,16 @@ Summary run(const Scene& scene, const RunOptions& options,
 }  // namespace
 
 void bind(py::module_& m) {
-  m.def("run_scene", &run, py::arg("scene"), py::arg("options") = RunOptions{}, py::arg("progress") = py::none(),
-        py::arg("ranks") = py::none(),
-        about("run_scene",
-              "progress: a function of the number of steps done and of all. It returns False to cancel the run; None "
-              "goes on. Ctrl-C, and an exception of progress, end the run between two steps: the output folder is "
-              "complete up to there, and resume goes on from there.\n\nranks: the processes that share the run "
-              "(Ranks); None: this one alone. Where one raises an error, the others raise RankFailed; where progress "
-              "raises or cancels on one, the run ends on all."));
+  m.def(
+      "run_scene", &run, py::arg("scene"), py::arg("options") = RunOptions{}, py::arg("progress") = py::none(),
+      py::arg("ranks") = py::none(), py::arg("on_stage") = py::none(),
+      about("run_scene",
+            "progress: a function of the number of steps done and of all. It returns False to cancel the run; None "
+            "goes on. Ctrl-C, and an exception of progress, end the run between two steps: the output folder is "
+            "complete up to there, and resume goes on from there.\n\nranks: the processes that share the run "
+            "(Ranks); None: this one alone. Where one raises an error, the others raise RankFailed; where progress "
+            "raises or cancels on one, the run ends on all.\n\non_stage: a function that gets what is done before the "
+            "first step, as it starts: such as \"tetgen fills the surface\"."));
 }
 
 }  // namespace dartcast::python::run

@@ -285,6 +285,21 @@ def test_a_bar_shows_progress(tmp_path: pathlib.Path) -> None:
     for tqdm, text in (("with", "7/7"), ("without", "7 of 7 steps (100%)")):
         done = subprocess.run([sys.executable, "-c", program, tqdm], capture_output=True, text=True, check=False)
         assert done.returncode == 0 and text in done.stderr and done.stdout == "", done.stderr
+        assert "building the map, placing particles" in done.stderr, done.stderr
+
+
+def test_the_stages_before_the_first_step_are_told(tmp_path: pathlib.Path) -> None:
+    dc.write_mesh(dc.generate_bar(), tmp_path / "bar.vtu")
+    scene = dc.load_scene({"environment": {"mesh": str(tmp_path / "bar.vtu")}, "motion": {"steps": 2}, "particles": [{"count": 5}]})
+    told: list[str] = []
+    dc.formats.run_scene(scene, on_stage=told.append)
+    assert told[-1] == "building the map, placing particles"
+    steps: list[int] = []
+    with pytest.raises(ZeroDivisionError):  # before the first step
+        dc.formats.run_scene(scene, progress=lambda done, _: steps.append(done), on_stage=lambda _: 1 // 0)
+    assert steps == []
+    with pytest.raises(TypeError, match="on_stage: expected a function of a text"):
+        dc.formats.run_scene(scene, on_stage=3)
 
 
 def test_plots_need_matplotlib_and_pictures_do_without(monkeypatch: pytest.MonkeyPatch, run: dc.formats.Run) -> None:
