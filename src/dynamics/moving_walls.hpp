@@ -1,19 +1,29 @@
 // All walls of a complex with the boxes around their ways in the last move, for steps of many points: most are near none.
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
-#include "complex/simplex.hpp"
+#include "base/instruction_set.hpp"
 #include "dartcast/cell_complex.hpp"
+#include "dartcast/particle_state.hpp"
 #include "dartcast/threads.hpp"
-#include "dynamics/near_walls.hpp"
 #include "mesh/box_tree.hpp"
 
 namespace dartcast {
+
+/// The vertices of a wall's triangle.
+using WallCorners = std::array<std::uint32_t, 3>;
+
+/// A point's way, and a wall's triangle.
+struct WayAndWall {
+  std::uint32_t way;
+  WallCorners corners;
+};
 
 /// In space.
 class MovingWalls {
@@ -28,30 +38,40 @@ class MovingWalls {
   /// Brings the boxes to the last move. Cost: linear in the walls; in the cells if they are listed anew.
   void update(const CellComplex& complex, const Version& version, Threads threads);
 
-  /// Whether every wall whose box meets that of the way satisfies a condition. Precondition: update(). Walls with a corner
-  /// that is not in the exact range are left out, as NearWalls does.
-  template <class Condition>
-  bool all_near(const CellComplex& complex, const Vec3& from, const Vec3& to, Condition&& condition) const {
-    Box box = join({from, from}, {to, to});
-    const Vec3 largest = extent_of(box.low, box.high);
-    const double margin = 0x1p-50 * std::max({largest.x, largest.y, largest.z});  // more than rounding
-    box.low = box.low - Vec3{margin, margin, margin};
-    box.high = box.high + Vec3{margin, margin, margin};
-    bool all = true;
-    tree_->query(box, [&](std::uint32_t i) {
-      NearWalls::for_each_triangle(complex, faces_[i], [&](const NearWall& wall) { all = all && condition(wall); });
-      return all;
-    });
-    return all;
-  }
+  /// Appends the triangles of all walls whose box meets that of the way with this number. Precondition: update().
+  void find_near(const Vec3& from, const Vec3& to, std::uint32_t way, std::vector<WayAndWall>& pairs) const;
 
  private:
   void list(const CellComplex& complex);
-  [[nodiscard]] static Box box_of(const CellComplex& complex, CellFace face);
 
   std::optional<Version> version_;
-  std::vector<CellFace> faces_;
+  // For each wall, and one more: the first of its triangles, and of its points.
+  struct First {
+    std::uint32_t triangle, point;
+  };
+  std::vector<First> first_;
+  std::vector<WallCorners> triangles_;
+  std::vector<std::uint32_t> points_;
   std::optional<BoxTree> tree_;
 };
+
+namespace detail {
+
+/// Moves the pairs that a filter does not prove apart to the front, in their order, and returns their number. It is the first
+/// part of filtered_touch(), for four pairs at a time, and proves the same. The points go from their states' positions to the
+/// targets, vertices from before to after. Cost: 90 instructions a pair.
+std::size_t keep_undecided(std::span<WayAndWall> pairs, const ParticleState* states, const Vec3* targets,
+                           const Vec3* before, const Vec3* after, InstructionSet set = best_instruction_set());
+
+namespace portable {
+std::size_t undecided_pairs(std::span<WayAndWall> pairs, const ParticleState* states, const Vec3* targets,
+                            const Vec3* before, const Vec3* after);
+}  // namespace portable
+namespace avx2 {
+std::size_t undecided_pairs(std::span<WayAndWall> pairs, const ParticleState* states, const Vec3* targets,
+                            const Vec3* before, const Vec3* after);
+}  // namespace avx2
+
+}  // namespace detail
 
 }  // namespace dartcast

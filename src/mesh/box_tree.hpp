@@ -3,10 +3,15 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
 
 #include "dartcast/vec3.hpp"
 
@@ -29,7 +34,10 @@ inline bool overlap(const Box& a, const Box& b) {
          a.low.z <= b.high.z && b.low.z <= a.high.z;
 }
 
-/// Built once over a list of boxes; cost n log n. Fewer than 2^32.
+/// Built once over a list of boxes; cost n log n. Fewer than 2^31.
+///
+/// A query compares four boxes at a time, in floats. Rounding to floats keeps the order, so boxes that overlap still do. Those
+/// of the list are then compared as they are. Beyond the range of floats, 1e-38 to 1e38, a query looks at most boxes.
 class BoxTree {
  public:
   explicit BoxTree(std::vector<Box> boxes);
@@ -43,34 +51,54 @@ class BoxTree {
   template <class Visit>
   void query(const Box& query, Visit&& visit) const {
     if (nodes_.empty()) return;
-    std::array<std::uint32_t, 64> open;  // at most one more than the tree's depth: halves of fewer than 2^32
+    const Lanes3 low = splat(query.low);
+    const Lanes3 high = splat(query.high);
+    std::array<std::uint32_t, 64> open;  // at most three a level, and one: quarters of fewer than 2^31
     open[0] = 0;
     for (std::size_t size = 1; size > 0;) {
       const Node& node = nodes_[open[--size]];
-      if (!overlap(node.box, query)) continue;
-      if (node.child != 0) {
-        open[size++] = node.child;
-        open[size++] = node.child + 1;
-        continue;
-      }
-      for (std::uint32_t i = node.begin; i < node.end; ++i) {
-        if (overlap(boxes_[order_[i]], query) && !visit(order_[i])) return;
+      unsigned met = lanes_set((node.low.x <= high.x) & (low.x <= node.high.x) & (node.low.y <= high.y) &
+                               (low.y <= node.high.y) & (node.low.z <= high.z) & (low.z <= node.high.z));
+      for (; met != 0; met &= met - 1) {
+        const std::uint32_t child = node.child[std::countr_zero(met)];
+        if ((child & is_box) == 0)
+          open[size++] = child;
+        else if (overlap(boxes_[child & ~is_box], query) && !visit(child & ~is_box))
+          return;
       }
     }
   }
 
  private:
-  struct Node {
-    Box box;
-    std::uint32_t begin;
-    std::uint32_t end;
-    std::uint32_t child = 0;  // the first of two children; 0: a leaf
+  using Lanes = float __attribute__((vector_size(16)));
+  using Mask = int __attribute__((vector_size(16)));
+  struct Lanes3 {
+    Lanes x, y, z;
   };
+  struct Node {
+    Lanes3 low, high;  // of four children; of a missing one no numbers
+    std::array<std::uint32_t, 4> child;
+  };
+  static constexpr std::uint32_t is_box = 1U << 31U;  // a child that is no node, but one of the boxes
 
-  [[nodiscard]] Box box_of(std::uint32_t begin, std::uint32_t end) const;
+  static Lanes splat(double x) {
+    const auto f = static_cast<float>(x);
+    return Lanes{f, f, f, f};
+  }
+  static Lanes3 splat(const Vec3& v) { return {splat(v.x), splat(v.y), splat(v.z)}; }
+  static unsigned lanes_set(const Mask& m) {
+#if defined(__SSE2__)
+    return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(m)));
+#else
+    return static_cast<unsigned>((m[0] & 1) | (m[1] & 2) | (m[2] & 4) | (m[3] & 8));
+#endif
+  }
+
+  void divide(std::uint32_t* begin, std::uint32_t* end, std::uint32_t* middle) const;
+  std::uint32_t add_node(std::uint32_t* begin, std::uint32_t* end);
+  void fit();
 
   std::vector<Box> boxes_;
-  std::vector<std::uint32_t> order_;
   std::vector<Node> nodes_;
 };
 

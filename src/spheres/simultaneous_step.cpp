@@ -23,11 +23,11 @@ constexpr double rest_gap = 0x1p-20;
 // not proved free.
 constexpr std::array<double, 3> left_out = {0x1p-20, 0x1p-10, 0.5};
 
-using WallCorners = std::array<Vec3, 3>;
+using Corners3 = std::array<Vec3, 3>;
 
-WallCorners corners_at(const CellComplex& complex, const std::array<Vertex, 3>& vertices, double time) {
+Corners3 corners_at(const CellComplex& complex, const std::array<Vertex, 3>& vertices, double time) {
   const Between places = {complex.previous_positions().data(), complex.positions().data(), time};
-  WallCorners t = {places[vertices[0]], places[vertices[1]], places[vertices[2]]};
+  Corners3 t = {places[vertices[0]], places[vertices[1]], places[vertices[2]]};
   if (complex.map().dimension() == 2) {
     for (Vec3& v : t) v.z = 0.0;
   }
@@ -35,7 +35,7 @@ WallCorners corners_at(const CellComplex& complex, const std::array<Vertex, 3>& 
 }
 
 // Unit, to the free side; 0 where the wall has no area.
-Vec3 normal_of(const WallCorners& t, unsigned dimension) {
+Vec3 normal_of(const Corners3& t, unsigned dimension) {
   const Vec3 e = t[1] - t[0];
   const Vec3 n = dimension == 2 ? Vec3{-e.y, e.x, 0.0} : cross(t[2] - t[0], e);
   const double length = norm(n);
@@ -44,14 +44,18 @@ Vec3 normal_of(const WallCorners& t, unsigned dimension) {
 
 // In the plane the third corner is one above the second: the point of the plane touches this triangle where it touches
 // the edge.
-detail::MovingPair pair_of(const Vec3& from, const Vec3& to, const NearWall& wall, unsigned dimension) {
+detail::MovingPair pair_of(const Vec3& from, const Vec3& to, const MovingTriangle& wall, unsigned dimension) {
   detail::MovingPair pair = {{from}, {to}};
   for (std::size_t k = 0; k < 3; ++k) {
-    pair.from[k + 1] = flushed(wall.corners.from[k]);
-    pair.to[k + 1] = flushed(wall.corners.to[k]);
+    pair.from[k + 1] = flushed(wall.from[k]);
+    pair.to[k + 1] = flushed(wall.to[k]);
   }
   if (dimension == 2) pair.from[3].z = pair.to[3].z = 1.0;
   return pair;
+}
+
+bool is_apart(const detail::MovingPair& pair) {
+  return detail::filtered_touch(pair, detail::PairKind::vertex_face).answer == detail::FilterAnswer::apart;
 }
 
 // The vertices that the first wall has in common with all others that share any with it.
@@ -134,16 +138,40 @@ StepResult SimultaneousStep::step(std::uint32_t particle, ParticleState& state, 
 
 // If all cells in reach are positive during the move, a point that touches none of the walls there ends at its target. Else
 // the cells carry it. A walk that meets no wall and ends there is right in both cases, so no cell is looked at here.
-bool SimultaneousStep::is_free(const ParticleState& state, const Vec3& target, Memory& memory) const {
-  const unsigned dimension = complex_.map().dimension();
-  const auto is_apart = [&](const NearWall& wall) {
-    const auto pair = pair_of(state.position, target, wall, dimension);
-    return detail::filtered_touch(pair, detail::PairKind::vertex_face).answer == detail::FilterAnswer::apart;
-  };
-  if (all_walls_ != nullptr) return all_walls_->all_near(complex_, state.position, target, is_apart);
+void SimultaneousStep::find_free(std::span<const ParticleState> states, std::span<const Vec3> targets,
+                                 std::span<std::uint8_t> free, Memory& memory) const {
+  if (all_walls_ != nullptr) return find_free_of_all(states, targets, free, memory);
   const VertexMotion walls = motion_of(memory, 0.0, 1.0);
-  const auto near = memory.near.search_way(complex_, state.cell, state.position, target, walls);
-  return std::all_of(near.begin(), near.end(), is_apart);
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    if (free[i] == 0) continue;
+    const auto near = memory.near.search_way(complex_, states[i].cell, states[i].position, targets[i], walls);
+    free[i] = std::all_of(near.begin(), near.end(), [&](const NearWall& wall) {
+      return is_apart(pair_of(states[i].position, targets[i], wall.corners, complex_.map().dimension()));
+    });
+  }
+}
+
+// Walls with a corner that is not in the exact range are left out, as NearWalls does.
+void SimultaneousStep::find_free_of_all(std::span<const ParticleState> states, std::span<const Vec3> targets,
+                                        std::span<std::uint8_t> free, Memory& memory) const {
+  auto& pairs = memory.ways;
+  pairs.clear();
+  for (std::uint32_t i = 0; i < states.size(); ++i) {
+    if (free[i] != 0) all_walls_->find_near(states[i].position, targets[i], i, pairs);
+  }
+  const Vec3* before = complex_.previous_positions().data();
+  const Vec3* after = complex_.positions().data();
+  pairs.resize(detail::keep_undecided(pairs, states.data(), targets.data(), before, after));
+  for (const auto& [i, corners] : pairs) {
+    MovingTriangle wall;
+    bool in_range = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      wall.from[k] = before[corners[k]];
+      wall.to[k] = after[corners[k]];
+      in_range = in_range && in_exact_range(wall.from[k]) && in_exact_range(wall.to[k]);
+    }
+    if (free[i] != 0 && in_range && !is_apart(pair_of(states[i].position, targets[i], wall, 3))) free[i] = 0;
+  }
 }
 
 VertexMotion SimultaneousStep::motion_of(Memory& memory, double begin, double end) const {
@@ -203,8 +231,8 @@ bool SimultaneousStep::walk(Run& run, const Vec3& target) const {
 
 // The displacement of a wall's point in the whole step: of the one nearest to x at a time.
 Vec3 SimultaneousStep::wall_displacement(const NearWall& wall, const Vec3& x, double time) const {
-  const WallCorners before = corners_at(complex_, wall.vertex, 0.0);
-  const WallCorners after = corners_at(complex_, wall.vertex, 1.0);
+  const Corners3 before = corners_at(complex_, wall.vertex, 0.0);
+  const Corners3 after = corners_at(complex_, wall.vertex, 1.0);
   const auto nearest = nearest_on_triangle(corners_at(complex_, wall.vertex, time), x);
   Vec3 displacement;
   for (std::size_t k = 0; k < 3; ++k) displacement += (after[k] - before[k]) * nearest.weights[k];
@@ -229,7 +257,8 @@ bool SimultaneousStep::look(Memory& memory, const SimultaneousLeg& leg, const Ve
   if (first_flat_time(complex_, memory.near.cells_reached(), walls)) return false;
   for (const NearWall& wall : near) {
     ++memory.pairs;
-    const auto time = detail::first_touch(pair_of(leg.from, to, wall, dimension), detail::PairKind::vertex_face);
+    const auto time =
+        detail::first_touch(pair_of(leg.from, to, wall.corners, dimension), detail::PairKind::vertex_face);
     if (time) memory.touches.push_back({*time, wall});
   }
   return true;
@@ -341,7 +370,7 @@ Vec3 SimultaneousStep::aim(const Run& run, const Contact& contact, const AfterCo
   if (!next.along || !in_exact_range(q)) return q;
   const double slack = along_share * std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
   for (const auto& m : run.memory.met) {
-    const WallCorners t = corners_at(complex_, m.wall.vertex, 1.0);
+    const Corners3 t = corners_at(complex_, m.wall.vertex, 1.0);
     const Vec3 normal = normal_of(t, complex_.map().dimension());
     if (!(dot(d, normal) >= -slack)) continue;
     const double side = std::max({norm(t[1] - t[0]), norm(t[2] - t[1]), norm(t[0] - t[2])});

@@ -2,7 +2,7 @@
 // same time".
 //
 // A leg is a straight way of the point from a time to the end of the step, among vertices on their straight ways.
-// Most points touch none in a step: is_free() proves it with filters alone, and a batch of walks takes the step. Else:
+// Most points touch none in a step: find_free() proves it with filters alone, and a batch of walks takes the step. Else:
 //  1. look()          the walls that the point comes to in the leg, with the exact time of each touch
 //  2. no touch        the point ends at its target, in the simplex among the cells reached that holds it
 //  3. stop_before()   else the point goes on to just before the first touch, once this rounded way is proved free
@@ -14,6 +14,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "dartcast/cell_complex.hpp"
@@ -51,6 +52,8 @@ class SimultaneousStep {
     std::vector<Touch> touches;  ///< of the last look
     std::vector<Touch> met;      ///< of the contact
     std::uint64_t pairs = 0;     ///< of this step
+    std::vector<WayAndWall> ways;
+    std::vector<std::uint8_t> free;
   };
 
   /// The references must outlive it. The complex has been moved for this step. `all_walls`: its walls; none: each point's are
@@ -63,8 +66,9 @@ class SimultaneousStep {
         stepper_(complex, true, options, respond),
         all_walls_(all_walls) {}
 
-  /// Whether the point proves to touch no wall on its way.
-  bool is_free(const ParticleState& state, const Vec3& target, Memory& memory) const;
+  /// Clears the marks of points that do not prove to touch no wall on their ways. Those without a mark are not looked at.
+  void find_free(std::span<const ParticleState> states, std::span<const Vec3> targets, std::span<std::uint8_t> free,
+                 Memory& memory) const;
 
   /// As Stepper::step().
   StepResult step(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
@@ -75,6 +79,8 @@ class SimultaneousStep {
   struct Stop;
   enum class LegEnd : std::uint8_t { arrived, stopped, goes_on, on_wall, undecided };
 
+  void find_free_of_all(std::span<const ParticleState> states, std::span<const Vec3> targets,
+                        std::span<std::uint8_t> free, Memory& memory) const;
   VertexMotion motion_of(Memory& memory, double begin, double end) const;
   LegEnd take(Run& run, SimultaneousLeg& leg) const;
   bool walk(Run& run, const Vec3& target) const;

@@ -28,11 +28,16 @@ class SimultaneousDecider final : public detail::StepDecider {
 
   void choose(std::span<const ParticleState> states, std::span<const Vec3> targets,
               std::span<detail::StepTaker> takers) const override {
-    const Borrowed memory(buffers_);
+    const Borrowed borrowed(buffers_);
+    SimultaneousStep::Memory& memory = borrowed.memory();
+    memory.free.resize(states.size());
+    for (std::size_t i = 0; i < states.size(); ++i)
+      memory.free[i] = states[i].held || states[i].touching_count > 0 ? 0 : 1;
+    step_.find_free(states, targets, memory.free, memory);
     for (std::size_t i = 0; i < states.size(); ++i) {
-      takers[i] = states[i].held || states[i].touching_count > 0          ? detail::StepTaker::carried
-                  : step_.is_free(states[i], targets[i], memory.memory()) ? detail::StepTaker::walk
-                                                                          : detail::StepTaker::decider;
+      takers[i] = states[i].held || states[i].touching_count > 0 ? detail::StepTaker::carried
+                  : memory.free[i] != 0                          ? detail::StepTaker::walk
+                                                                 : detail::StepTaker::decider;
     }
   }
   StepResult step(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,

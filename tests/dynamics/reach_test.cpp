@@ -2,16 +2,21 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <set>
 
 #include "base/random.hpp"
 #include "dartcast/complex_edit.hpp"
 #include "dartcast/environment.hpp"
+#include "dartcast/predicates.hpp"
 #include "dartcast/remeshing.hpp"
 #include "dynamics/moving_walls.hpp"
 #include "dynamics/reached_faces.hpp"
+#include "predicates/moving_pair.hpp"
 #include "support/meshes.hpp"
 #include "support/random_vectors.hpp"
+#include "support/tier.hpp"
 
 namespace dartcast::reach_test {
 
@@ -76,11 +81,14 @@ TEST(Reach, WallsWhoseBoxesMeetAWay) {
       const Vec3 from = Vec3{3, 3, 3} + random_vector(random, 3.0);
       const Vec3 to = from + random_vector(random, 0.5);
       const Box way = join({from, from}, {to, to});
-      std::set<std::pair<std::uint32_t, std::uint16_t>> found;
-      walls.all_near(complex, from, to, [&](const NearWall& w) {
-        found.insert({w.face.cell.value, w.face.face});
-        return true;
-      });
+      std::vector<WayAndWall> pairs;
+      walls.find_near(from, to, 7, pairs);
+      std::set<WallCorners> found;
+      for (const WayAndWall& p : pairs) {
+        ASSERT_EQ(p.way, 7U);
+        found.insert(p.corners);
+      }
+      ASSERT_EQ(found.size(), pairs.size());
       for (const Cell c : complex.map().cells()) {
         const CellView cell = complex.map().view(c);
         for (std::uint16_t f = 0; cell.is_free() && f < cell.shape().face_count(); ++f) {
@@ -91,11 +99,71 @@ TEST(Reach, WallsWhoseBoxesMeetAWay) {
             for (const auto& x : {complex.positions(), complex.previous_positions()})
               box = join(box, {x[cell.vertex(p).value], x[cell.vertex(p).value]});
           }
-          ASSERT_EQ(found.contains({c.value, f}), overlap(box, way));
+          for (std::uint16_t t = 0; t < cell.shape().triangle_count(f); ++t) {
+            const auto local = cell.shape().triangle(f, t);
+            const WallCorners corners = {cell.vertex(local[0]).value, cell.vertex(local[1]).value,
+                                         cell.vertex(local[2]).value};
+            ASSERT_EQ(found.contains(corners), overlap(box, way));
+          }
         }
       }
     }
   }
+}
+
+// The filter in vectors proves nothing that is not so, keeps the order, and is the same with each instruction set.
+TEST(Reach, PairsThatAreProvedApart) {
+  Random random(9);
+  std::size_t kept = 0, all = 0, apart = 0;
+  for (int k = 0; k < test::scaled(3000, 60000); ++k) {
+    const double unit = std::array{1.0, 0x1p-20, 0x1p200, 0x1p-290, 0x1p-302}[static_cast<std::size_t>(k) % 5];
+    const bool lattice = k % 3 == 0;
+    const auto place = [&] {
+      Vec3 x = random_vector(random, 2.0);
+      if (lattice) x = {std::floor(x.x), std::floor(x.y), std::floor(x.z)};
+      return x * unit;
+    };
+    std::vector<Vec3> before, after, targets;
+    std::vector<ParticleState> states;
+    std::vector<WayAndWall> pairs;
+    for (std::uint32_t i = 0; i < 9; ++i) {
+      before.push_back(place());
+      after.push_back(before.back() + place() * 0.25);
+      states.emplace_back().position = flushed(place());
+      targets.push_back(flushed(states.back().position + place() * 0.25));
+    }
+    if (k % 50 == 1) after[3].x = std::numeric_limits<double>::infinity();
+    if (k % 50 == 2) after[4].y = std::nan("");
+    const auto any = [&] { return static_cast<std::uint32_t>(random.uniform(0.0, 9.0)); };
+    const auto count = static_cast<std::size_t>(k % 14);
+    for (std::size_t i = 0; i < count; ++i) pairs.push_back({any(), {any(), any(), any()}});
+    std::vector<WayAndWall> rest = pairs, portable = pairs;
+    rest.resize(detail::keep_undecided(rest, states.data(), targets.data(), before.data(), after.data()));
+    portable.resize(detail::keep_undecided(portable, states.data(), targets.data(), before.data(), after.data(),
+                                           detail::InstructionSet::portable));
+    const auto same = [](const WayAndWall& a, const WayAndWall& b) { return a.way == b.way && a.corners == b.corners; };
+    ASSERT_TRUE(std::equal(rest.begin(), rest.end(), portable.begin(), portable.end(), same)) << k;
+    std::size_t next = 0;
+    for (const WayAndWall& p : pairs) {
+      if (next < rest.size() && same(p, rest[next])) {
+        ++next;
+        continue;
+      }
+      detail::MovingPair pair{{states[p.way].position}, {targets[p.way]}};
+      for (std::size_t i = 0; i < 3; ++i) {
+        pair.from[i + 1] = flushed(before[p.corners[i]]);
+        pair.to[i + 1] = flushed(after[p.corners[i]]);
+      }
+      ASSERT_FALSE(detail::exact_touch(pair, detail::PairKind::vertex_face)) << k;
+      ++apart;
+    }
+    ASSERT_EQ(next, rest.size()) << k;
+    kept += rest.size();
+    all += pairs.size();
+  }
+  EXPECT_EQ(kept + apart, all);
+  EXPECT_GT(apart, all / 5);
+  EXPECT_GT(kept, all / 10);
 }
 
 }  // namespace dartcast::reach_test
