@@ -25,7 +25,9 @@ Box box_of(std::span<const std::uint32_t> points, const Vec3* before, const Vec3
 
 }  // namespace
 
-void MovingWalls::list(const CellComplex& complex) {
+void MovingWalls::list(const CellComplex& complex, const Version& version) {
+  if (version_ == version) return;
+  version_ = version;
   first_.assign(1, {});
   triangles_.clear();
   points_.clear();
@@ -49,11 +51,9 @@ void MovingWalls::list(const CellComplex& complex) {
   }
 }
 
-void MovingWalls::update(const CellComplex& complex, const Version& version, Threads threads) {
+void MovingWalls::update(const CellComplex& complex, Threads threads) {
   constexpr std::size_t grain = 1024;
-  if (version_ != version) list(complex);
-  version_ = version;
-  std::vector<Box> boxes = tree_ ? tree_->take_boxes() : std::vector<Box>(first_.size() - 1);
+  std::vector<Box> boxes = tree_ ? tree_->take_boxes() : std::vector<Box>(size());
   const Vec3* before = complex.previous_positions().data();
   const Vec3* after = complex.positions().data();
   parallel_for(boxes.size(), grain, threads, [&](std::size_t begin, std::size_t end) {

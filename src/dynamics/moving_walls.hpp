@@ -35,15 +35,17 @@ class MovingWalls {
     bool operator==(const Version&) const = default;
   };
 
-  /// Brings the boxes to the last move. Cost: linear in the walls; in the cells if they are listed anew.
-  void update(const CellComplex& complex, const Version& version, Threads threads);
+  /// Lists the walls, if those of another version are known. Cost: linear in the cells.
+  void list(const CellComplex& complex, const Version& version);
+  [[nodiscard]] std::size_t size() const { return first_.size() - 1; }
+
+  /// Brings the boxes to the last move. Precondition: list(). Cost: linear in the walls.
+  void update(const CellComplex& complex, Threads threads);
 
   /// Appends the triangles of all walls whose box meets that of the way with this number. Precondition: update().
   void find_near(const Vec3& from, const Vec3& to, std::uint32_t way, std::vector<WayAndWall>& pairs) const;
 
  private:
-  void list(const CellComplex& complex);
-
   std::optional<Version> version_;
   // For each wall, and one more: the first of its triangles, and of its points.
   struct First {

@@ -10,8 +10,10 @@
 
 namespace dartcast::detail {
 
+/// Longer ones than this allocate memory. Products of three coordinates within a few powers of two of each other are shorter.
+inline constexpr unsigned bits_in_place = 512;
 using ExactInteger =
-    boost::multiprecision::number<boost::multiprecision::cpp_int_backend<>, boost::multiprecision::et_off>;
+    boost::multiprecision::number<boost::multiprecision::cpp_int_backend<bits_in_place>, boost::multiprecision::et_off>;
 
 struct ExactForm {
   int degree = 0;  // at most 3

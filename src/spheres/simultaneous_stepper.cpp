@@ -87,13 +87,17 @@ StepReport SimultaneousStepper::advance(Environment& environment, Particles& par
   if (particles.size() == 0 || !environment.awaits_advance(particles))
     return environment.advance(particles, targets, respond, options);
   if (!buffers_) buffers_ = std::make_unique<Buffers>();
-  // A list of all walls pays if there are not many more cells than points.
-  constexpr std::size_t cells_for_a_point = 8;
+  // A look at all walls costs some 250 instructions for each, and a search through cells some 6,000 for each point. Before
+  // that the walls have to be found among the cells.
+  constexpr std::size_t cells_for_a_point = 64;
+  constexpr std::size_t walls_for_a_point = 16;
   const CombinatorialMap& map = environment.map();
-  const bool lists_walls = map.dimension() == 3 && map.cell_count() <= cells_for_a_point * particles.size();
-  if (lists_walls)
-    buffers_->walls.update(environment.complex(), {environment.members_->id, environment.members_->edits},
-                           environment.threads());
+  bool lists_walls = map.dimension() == 3 && map.cell_count() <= cells_for_a_point * particles.size();
+  if (lists_walls) {
+    buffers_->walls.list(environment.complex(), {environment.members_->id, environment.members_->edits});
+    lists_walls = buffers_->walls.size() <= walls_for_a_point * particles.size();
+  }
+  if (lists_walls) buffers_->walls.update(environment.complex(), environment.threads());
   const auto make = [&](const ContactCallback& answer) {
     return std::make_unique<SimultaneousDecider>(environment.complex(), options, answer,
                                                  lists_walls ? &buffers_->walls : nullptr, *buffers_);

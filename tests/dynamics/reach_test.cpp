@@ -76,7 +76,8 @@ TEST(Reach, WallsWhoseBoxesMeetAWay) {
     for (const Vec3& x : environment.positions()) next.push_back(x + random_vector(random, 0.1));
     environment.move(next);
     const CellComplex& complex = environment.complex();
-    walls.update(complex, {1, environment.edit_count()}, Threads{1});
+    walls.list(complex, {1, environment.edit_count()});
+    walls.update(complex, Threads{1});
     for (int k = 0; k < 50; ++k) {
       const Vec3 from = Vec3{3, 3, 3} + random_vector(random, 3.0);
       const Vec3 to = from + random_vector(random, 0.5);
