@@ -179,19 +179,13 @@ ExactTime ExactTime::end() {
   return time;
 }
 
+// f changes its sign at its root alone, and is not 0 at the ends.
 void ExactTime::halve() {
-  Halves halves = halves_of(bernstein_);
   ++k_;
   j_ *= 2;
-  if (halves.right.front() == 0) {
-    exact_ = true;
-    ++j_;
-  } else if (changes_of_sign(halves.left) == 1) {
-    bernstein_ = std::move(halves.left);
-  } else {
-    bernstein_ = std::move(halves.right);
-    ++j_;
-  }
+  const int middle = value_at(f_, j_ + 1, k_).sign();
+  exact_ = middle == 0;
+  if (exact_ || middle == sign_before_) ++j_;
 }
 
 // The roots of a divisor of f_ are roots of f_. It has one here, and a simple one. f is 0 at it if the divisor changes
@@ -231,37 +225,39 @@ std::vector<ExactTime> roots_inside(const ExactForm& f) {
   ExactTime whole;
   whole.exact_ = false;
   whole.f_ = p;
-  whole.bernstein_ = bernstein(p);
-  std::vector<ExactTime> open{whole};
+  struct Part {
+    ExactTime time;
+    Integers bernstein;  // f's coefficients there, times a positive number
+  };
+  std::vector<Part> open{{whole, bernstein(p)}};
   while (!open.empty()) {
-    ExactTime part = std::move(open.back());
+    Part part = std::move(open.back());
     open.pop_back();
-    if (part.exact_) {
-      roots.push_back(std::move(part));
+    if (part.time.exact_) {
+      roots.push_back(std::move(part.time));
       continue;
     }
-    const Integers& b = part.bernstein_;
+    const Integers& b = part.bernstein;
     const int changes = changes_of_sign(b);
     if (changes == 0) continue;
     if (changes == 1 && b.front() != 0 && b.back() != 0) {
-      roots.push_back(std::move(part));
+      part.time.sign_before_ = b.front().sign();
+      roots.push_back(std::move(part.time));
       continue;
     }
     Halves halves = halves_of(b);
-    ExactTime left = part;
-    ExactTime right = part;
-    left.k_ = right.k_ = part.k_ + 1;
-    left.j_ = part.j_ * 2;
+    ExactTime left = part.time;
+    ExactTime right = std::move(part.time);
+    left.k_ = right.k_ = right.k_ + 1;
+    left.j_ *= 2;
     right.j_ = left.j_ + 1;
     ExactTime middle;
     middle.k_ = right.k_;
     middle.j_ = right.j_;
     const bool middle_is_root = halves.right.front() == 0;
-    left.bernstein_ = std::move(halves.left);
-    right.bernstein_ = std::move(halves.right);
-    open.push_back(std::move(right));
-    if (middle_is_root) open.push_back(std::move(middle));
-    open.push_back(std::move(left));
+    open.push_back({std::move(right), std::move(halves.right)});
+    if (middle_is_root) open.push_back({std::move(middle), {}});
+    open.push_back({std::move(left), std::move(halves.left)});
   }
   return roots;
 }

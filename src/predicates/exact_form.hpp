@@ -50,8 +50,8 @@ class ExactTime {
   bool exact_ = true;
   int k_ = 0;
   ExactInteger j_;
-  ExactPolynomial f_;                    // of an interval
-  std::vector<ExactInteger> bernstein_;  // f's coefficients on it, times a positive number
+  ExactPolynomial f_;    // of an interval
+  int sign_before_ = 0;  // f's, at its start
 };
 
 /// The roots of f strictly between 0 and 1 in ascending order, each once. f is not 0 throughout.
