@@ -217,13 +217,13 @@ class PairFilter {
     }
   }
 
-  FilteredTouch run() {
+  FilteredTouch run(bool timed) {
     int parts = 0;
     for (std::size_t size = 1; size > 0;) {
       const TimePart<Real, N>& part = stack_[size - 1];
       ++parts;
       const PartFate fate = fate_of(part);
-      if (fate == PartFate::touching) return narrowed(part);
+      if (fate == PartFate::touching) return timed ? narrowed(part) : FilteredTouch{FilterAnswer::touching, part.start};
       if (fate == PartFate::apart) {
         --size;
         continue;
@@ -306,7 +306,7 @@ CubicCoefficients<Real> volume_of(const Differences<Real, N>& d) {
 }
 
 template <class Real, std::size_t N>
-FilteredTouch filter(const MovingPair& pair) {
+FilteredTouch filter(const MovingPair& pair, bool timed = true) {
   const Differences<double, N> rounded = differences<double, N>(pair);
   const Extent extent = extent_of(rounded);
   if (extent.apart) return {FilterAnswer::apart};
@@ -318,7 +318,7 @@ FilteredTouch filter(const MovingPair& pair) {
   const CubicCoefficients<Real> c = volume_of<Real, N>(d);
   // Up to three times as large as those that are divided, and so are their errors.
   if (common_sign(c, 180 * rounding<Real> * m.volume) != 0) return {FilterAnswer::apart};
-  return PairFilter<Real, N>(d, m, c).run();
+  return PairFilter<Real, N>(d, m, c).run(timed);
 }
 
 }  // namespace
@@ -338,6 +338,14 @@ std::optional<double> first_touch(const MovingPair& pair, PairKind kind) {
     if (filtered.answer == FilterAnswer::touching) return filtered.time;
   }
   return exact_touch(pair, kind);
+}
+
+bool touches(const MovingPair& pair, PairKind kind) {
+  const bool face = kind == PairKind::vertex_face;
+  FilterAnswer answer = (face ? filter<double, 3>(pair, false) : filter<double, 4>(pair, false)).answer;
+  if (answer == FilterAnswer::undecided)
+    answer = (face ? filter<DoubleDouble, 3>(pair, false) : filter<DoubleDouble, 4>(pair, false)).answer;
+  return answer == FilterAnswer::undecided ? exact_touch(pair, kind).has_value() : answer == FilterAnswer::touching;
 }
 
 }  // namespace dartcast::detail

@@ -248,20 +248,35 @@ bool SimultaneousStep::presses(const Memory& memory, const SimultaneousLeg& leg)
   return dot(leg.to - leg.from - walls, normal) < 0.0;
 }
 
-// The touches on the way to a place at a time. Returns false where a cell in reach becomes flat: they are not known then.
+// Finds the walls that the point may touch on the way to a place at a time. Returns false where a cell in reach becomes
+// flat: they are not known then.
+bool SimultaneousStep::search(Memory& memory, const SimultaneousLeg& leg, const Vec3& to, double end) const {
+  memory.motion = motion_of(memory, leg.begin, end);
+  memory.found = memory.near.search_way(complex_, leg.at.cell, leg.from, to, memory.motion);
+  return !first_flat_time(complex_, memory.near.cells_reached(), memory.motion);
+}
+
+// The touches on that way. Returns false where they are not known.
 bool SimultaneousStep::look(Memory& memory, const SimultaneousLeg& leg, const Vec3& to, double end) const {
-  const unsigned dimension = complex_.map().dimension();
-  const VertexMotion walls = memory.motion = motion_of(memory, leg.begin, end);
-  const auto near = memory.near.search_way(complex_, leg.at.cell, leg.from, to, walls);
   memory.touches.clear();
-  if (first_flat_time(complex_, memory.near.cells_reached(), walls)) return false;
-  for (const NearWall& wall : near) {
-    ++memory.pairs;
-    const auto time =
-        detail::first_touch(pair_of(leg.from, to, wall.corners, dimension), detail::PairKind::vertex_face);
+  if (!search(memory, leg, to, end)) return false;
+  for (const NearWall& wall : memory.found) {
+    const auto pair = pair_of(leg.from, to, wall.corners, complex_.map().dimension());
+    const auto time = detail::first_touch(pair, detail::PairKind::vertex_face);
     if (time) memory.touches.push_back({*time, wall});
   }
+  memory.pairs += memory.found.size();
   return true;
+}
+
+// Whether that way is proved to touch none.
+bool SimultaneousStep::is_proved_free(Memory& memory, const SimultaneousLeg& leg, const Vec3& to, double end) const {
+  if (!search(memory, leg, to, end)) return false;
+  memory.pairs += memory.found.size();
+  return std::none_of(memory.found.begin(), memory.found.end(), [&](const NearWall& wall) {
+    return detail::touches(pair_of(leg.from, to, wall.corners, complex_.map().dimension()),
+                           detail::PairKind::vertex_face);
+  });
 }
 
 // The simplex that holds a point at the end of the way that was looked at last, which is free.
@@ -310,8 +325,7 @@ std::optional<SimultaneousStep::Stop> SimultaneousStep::stop_before(Memory& memo
     const double end = leg.begin + share * (1.0 - leg.begin);
     if (!(end > leg.begin)) return {};
     const Vec3 place = flushed(leg.from + (leg.to - leg.from) * share);
-    if (look(memory, leg, place, end) && memory.touches.empty())
-      return Stop{end, place, holding(memory, leg, place, end)};
+    if (is_proved_free(memory, leg, place, end)) return Stop{end, place, holding(memory, leg, place, end)};
   }
   return {};
 }

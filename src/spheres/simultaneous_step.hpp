@@ -48,7 +48,8 @@ class SimultaneousStep {
 
     NearWalls near;
     PlacesBetween places;
-    VertexMotion motion;         ///< of the last look
+    VertexMotion motion;  ///< of the last search
+    std::span<const NearWall> found;
     std::vector<Touch> touches;  ///< of the last look
     std::vector<Touch> met;      ///< of the contact
     std::uint64_t pairs = 0;     ///< of this step
@@ -84,6 +85,8 @@ class SimultaneousStep {
   VertexMotion motion_of(Memory& memory, double begin, double end) const;
   LegEnd take(Run& run, SimultaneousLeg& leg) const;
   bool walk(Run& run, const Vec3& target) const;
+  bool search(Memory& memory, const SimultaneousLeg& leg, const Vec3& to, double end) const;
+  bool is_proved_free(Memory& memory, const SimultaneousLeg& leg, const Vec3& to, double end) const;
   bool look(Memory& memory, const SimultaneousLeg& leg, const Vec3& to, double end) const;
   [[nodiscard]] SimplexId holding(const Memory& memory, const SimultaneousLeg& leg, const Vec3& x, double end) const;
   static void keep_first_touches(Memory& memory);
