@@ -135,6 +135,14 @@ TEST(Reach, PairsThatAreProvedApart) {
     }
     if (k % 50 == 1) after[3].x = std::numeric_limits<double>::infinity();
     if (k % 50 == 2) after[4].y = std::nan("");
+    const auto on_wall = [&](const std::vector<Vec3>& x) {  // but for rounding
+      return flushed(x[0] * 0.3125 + x[1] * 0.25 + x[2] * 0.4375 + random_vector(random, 0x1p-52 * unit));
+    };
+    for (std::uint32_t i = 0; k % 4 == 1 && i < 3; ++i) {
+      states[i].position = on_wall(before);
+      targets[i] = on_wall(after);
+      pairs.push_back({i, {0, 1, 2}});
+    }
     const auto any = [&] { return static_cast<std::uint32_t>(random.uniform(0.0, 9.0)); };
     const auto count = static_cast<std::size_t>(k % 14);
     for (std::size_t i = 0; i < count; ++i) pairs.push_back({any(), {any(), any(), any()}});
