@@ -57,7 +57,7 @@ std::uint32_t BoxTree::add_node(std::uint32_t* begin, std::uint32_t* end) {
   return number;
 }
 
-// Of a missing child all are no numbers, which no comparison meets: floats of far coordinates are infinite.
+// A missing child's bounds are no numbers, which no comparison meets: floats of far coordinates are infinite.
 void BoxTree::fit() {
   constexpr float far = std::numeric_limits<float>::infinity();
   constexpr float none = std::numeric_limits<float>::quiet_NaN();

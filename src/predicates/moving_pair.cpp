@@ -1,5 +1,5 @@
 // The filter of moving pairs, in doubles with proved bounds. Pairs that it leaves open are filtered again in double-doubles:
-// points that rest on walls are nearer to them than a double can tell.
+// points that rest on walls are nearer to them than a double can show.
 //
 // Phases: an axis that separates; the cubic of the volume, if it has one sign; else [0, 1] is halved, the earlier part
 // first. Forms are kept as Bernstein's coefficients. A part is
