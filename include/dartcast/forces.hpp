@@ -24,7 +24,10 @@ enum class Force : std::uint8_t {
   pressure_gradient,  ///< k Du/Dt
   virtual_mass,       ///< k (Du/Dt - dv/dt) / 2: the left side gets the second part
   saffman_mei,        ///< lift by shear: k C (u - v) x curl u, after R. Mei, 1992, up to and beyond Re 40
-  lorentz             ///< q (E + v x B), by Boris' scheme
+  lorentz,            ///< q (E + v x B), by Boris' scheme
+  /// Random motion by the fluid's molecules; it needs a law of drag, and the fluid's temperature. Velocity and way are drawn
+  /// together, by a law that is exact for any c dt. Random numbers depend on the seed, the particle's id and the step alone.
+  brownian
 };
 
 /// The medium around the particles, SI units.
@@ -32,7 +35,11 @@ struct Fluid {
   double density = 0.0;         ///< kg / m^3, 0: of no effect
   double viscosity = 0.0;       ///< Pa s, dynamic
   double mean_free_path = 0.0;  ///< m; above 0 drag is divided by Cunningham's 1 + Kn (1.257 + 0.4 exp(-1.1 / Kn))
+  double temperature = 0.0;     ///< K, 0: of no effect
 };
+
+/// J / K
+inline constexpr double boltzmann_constant = 1.380649e-23;
 
 /// The forces of a simulation.
 struct ForceOptions {

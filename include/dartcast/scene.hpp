@@ -269,6 +269,7 @@ struct MotionScene {
   std::vector<ArraySamples> sampled = {};
   double drag = 0.0;
   ForceOptions forces{};
+  double diffusion = 0.0;  ///< m^2 / s
   unsigned substeps = 1;
   Integrator integrator = Integrator::euler;
   WallMotion wall_motion = WallMotion::carried;

@@ -87,9 +87,12 @@ enum class Partition : std::uint8_t {
 struct SimulationOptions {
   double dt = 1e-3;  ///< of a step
   Vec3 gravity = {0.0, 0.0, 0.0};
-  double drag = 0.0;           ///< >= 0: the velocity relaxes to the field's (to 0 without one) as exp(-drag t)
-  ForceOptions forces = {};    ///< with terms: laws for particles of a size and mass; then drag is 0
-  WallResponse response = {};  ///< what happens at walls: Reflect{0.5}, Slide{}, ...
+  double drag = 0.0;         ///< >= 0: the velocity relaxes to the field's (to 0 without one) as exp(-drag t)
+  ForceOptions forces = {};  ///< with terms: laws for particles of a size and mass; then drag is 0
+  /// m^2 / s, >= 0: each segment adds a random way to each particle's, with the variance 2 D dt along each axis. Velocities
+  /// do not have it. Random numbers depend on the seed, the particle's id and the step alone. Not with collisions.
+  double diffusion = 0.0;
+  WallResponse response = {};                                ///< what happens at walls: Reflect{0.5}, Slide{}, ...
   std::map<std::string, WallResponse> patch_responses = {};  ///< at the walls of these patches, by name
   unsigned substeps = 1;  ///< > 0: a step's way is a polyline of so many segments; vertices move with the first one
   Integrator integrator = Integrator::euler;

@@ -71,3 +71,25 @@ def test_what_a_law_raises_comes_out_of_the_step() -> None:
         simulation.step()
     with pytest.raises(TypeError):
         simulation.set_law(3)
+
+
+def test_random_motion_is_that_of_seed_particle_and_step() -> None:
+    places = np.full((2000, 3), 1.5)
+    hot = dc.records.Fluid(density=1.2, viscosity=1.8e-5, temperature=300.0)
+    forces = dc.records.ForceOptions([dc.records.Force.STOKES, dc.records.Force.BROWNIAN], hot)
+    box = dc.generate_box(cells=[3, 3, 3], size=[3.0, 3.0, 3.0])
+    runs = []
+    for seed in (1, 1, 2):
+        thermal = dc.Simulation(dc.Environment(box), dc.SimulationOptions(dt=1e-3, forces=forces, seed=seed))
+        thermal.add(places, [0, 0, 0], material=dc.records.Material(1e-6, 1000.0))
+        diffusing = dc.Simulation(dc.Environment(box), dc.SimulationOptions(dt=0.1, diffusion=0.01, seed=seed))
+        diffusing.add(places, [0, 0, 0])
+        for _ in range(5):
+            thermal.step(), diffusing.step()
+        runs.append((thermal, diffusing))
+    for k in (0, 1):
+        assert np.array_equal(runs[0][k].positions, runs[1][k].positions)
+        assert not np.array_equal(runs[0][k].positions, runs[2][k].positions)
+    mass = 1000.0 * np.pi / 6 * 1e-18
+    assert abs(np.var(runs[0][0].velocities) * mass / (1.380649e-23 * 300.0) - 1) < 4 * np.sqrt(2 / 6000)
+    assert abs(np.var(runs[0][1].positions) / (2 * 0.01 * 0.5) - 1) < 4 * np.sqrt(2 / 6000)

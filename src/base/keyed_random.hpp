@@ -23,7 +23,36 @@ constexpr std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> count
 }
 
 /// Uses of random numbers: those of one never shift or repeat those of another. The values are part of every result.
-enum class RandomPurpose : std::uint32_t { place = 1, direction = 8 };
+/// They are below 2^8.
+enum class RandomPurpose : std::uint32_t {
+  place = 1,
+  direction = 8,
+  diffusion = 16,
+  brownian = 17,
+  eddy = 18,
+  size = 19
+};
+
+/// Random bits for items at a moment, which is a number below 2^53. Draws 0 to 7 of an item have others, and so has a
+/// KeyedRandom of another purpose.
+struct RandomMoment {
+  std::uint64_t seed = 0;
+  RandomPurpose purpose{};
+  std::uint64_t moment = 0;
+
+  [[nodiscard]] constexpr std::array<std::uint32_t, 2> key() const {
+    return {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32U)};
+  }
+  /// The half of the counter that is the same for all items.
+  [[nodiscard]] constexpr std::array<std::uint32_t, 2> counter(std::uint32_t draw) const {
+    const auto later = static_cast<std::uint32_t>(moment >> 32U);
+    return {static_cast<std::uint32_t>(moment), static_cast<std::uint32_t>(purpose) | draw << 8U | later << 11U};
+  }
+  [[nodiscard]] constexpr std::array<std::uint32_t, 4> bits(std::uint64_t id, std::uint32_t draw = 0) const {
+    const std::array<std::uint32_t, 2> common = counter(draw);
+    return philox({common[0], common[1], static_cast<std::uint32_t>(id), static_cast<std::uint32_t>(id >> 32U)}, key());
+  }
+};
 
 /// The numbers drawn for one item: a function of the seed, the purpose, the item's id and the number of the draw. The
 /// item with id k gets the same ones from every caller, and whatever was drawn for others.

@@ -159,6 +159,7 @@ class SceneReader {
     t.get("steps", scene.steps, 0, max_steps);
     t.get("gravity", scene.gravity);
     t.get("drag", scene.drag, Range::not_negative);
+    t.get("diffusion", scene.diffusion, Range::not_negative);
     t.get("substeps", scene.substeps, 1U, 1000U);
     t.get("wall_motion", scene.wall_motion,
           {{"carried", WallMotion::carried}, {"simultaneous", WallMotion::simultaneous}});
@@ -174,6 +175,7 @@ class SceneReader {
     t.get("density", fluid.density, Range::positive);
     t.get("viscosity", fluid.viscosity, Range::positive);
     t.get("mean_free_path", fluid.mean_free_path, Range::not_negative);
+    t.get("temperature", fluid.temperature, Range::positive);
     t.finish();
   }
 
@@ -185,7 +187,8 @@ class SceneReader {
                                                                    {"pressure-gradient", Force::pressure_gradient},
                                                                    {"virtual-mass", Force::virtual_mass},
                                                                    {"saffman-mei", Force::saffman_mei},
-                                                                   {"lorentz", Force::lorentz}};
+                                                                   {"lorentz", Force::lorentz},
+                                                                   {"brownian", Force::brownian}};
     std::vector<std::string> names;
     t.get("forces", names);
     for (const std::string& name : names) {

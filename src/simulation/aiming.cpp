@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "base/elementary.hpp"
 #include "base/parallel.hpp"
@@ -95,7 +96,7 @@ void Aiming::set_times(double begin, double duration) {
 double Aiming::lost_to_drag(double dt) const { return -exponential_less_one(-options_.drag * dt); }
 
 Acceleration Aiming::acceleration(double dt) const {
-  if (field_ || force_ || forces_.acts()) return {};
+  if (field_ || force_ || forces_.acts() || options_.diffusion > 0.0) return {};
   if (options_.drag == 0.0) return {options_.gravity, dt};
   return {options_.gravity * (lost_to_drag(dt) / (options_.drag * dt)), dt};
 }
@@ -114,8 +115,26 @@ Aiming::Segment Aiming::segment_of(ParticleSet& set, double dt, bool moving) {
 
 void Aiming::aim(ParticleSet& set, double dt, bool moving) {
   const Segment segment = segment_of(set, dt, moving);
-  if (forces_.acts()) return aim_by_forces(segment, set);
-  options_.integrator == Integrator::rk4 ? aim_by_runge_kutta(segment) : aim_at_field(segment);
+  if (forces_.acts())
+    aim_by_forces(segment, set);
+  else
+    options_.integrator == Integrator::rk4 ? aim_by_runge_kutta(segment) : aim_at_field(segment);
+  if (options_.diffusion > 0.0) diffuse(segment, set.ids());
+}
+
+void Aiming::diffuse(const Segment& segment, std::span<const std::uint64_t> ids) {
+  const double length = std::sqrt(2.0 * options_.diffusion * segment.dt);
+  const RandomMoment moment = {options_.seed, RandomPurpose::diffusion, moment_};
+  const bool planar = environment_.map().dimension() == 2;
+  parallel_for(targets_.size(), aim_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
+    std::array<Vec3, aim_grain> ways;
+    const std::size_t size = end - begin;
+    detail::draw_ways({moment, length, planar, ids.subspan(begin, size), std::span(ways).first(size)});
+    for (std::size_t i = begin; i < end; ++i) {
+      if (segment.statuses[i] != ParticleStatus::alive || segment.particles[i].held) continue;
+      targets_[i] = flushed(targets_[i] + ways[i - begin]);
+    }
+  });
 }
 
 // Most particles of a flow are aimed four at a time, and most of those without one in a short loop; the others one by
@@ -208,7 +227,7 @@ void Aiming::aim_by_forces(const Segment& segment, ParticleSet& set) {
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     if (segment.particles[i].held || segment.statuses[i] != ParticleStatus::alive) aim_one(segment, i);
   }
-  forces_.aim({fields(), begin_, segment.dt, segment.moving}, set, targets_);
+  forces_.aim({fields(), begin_, segment.dt, segment.moving, moment_}, set, targets_);
 }
 
 void Aiming::aim_stuck(ParticleSet& set, double dt) {

@@ -41,6 +41,8 @@ class Aiming {
 
   /// Brings the fields to the times of a segment of a step.
   void set_times(double begin, double duration);
+  /// The number of the next segment in the run, for random numbers.
+  void set_moment(std::uint64_t moment) { moment_ = moment; }
   /// Gives each particle the velocity and the target of a segment. `moving`: their positions are from before the last move.
   void aim(ParticleSet& set, double dt, bool moving);
   /// Targets of stuck particles are known only once their walls have moved.
@@ -68,6 +70,7 @@ class Aiming {
   void aim_at_field(const Segment& segment);
   void aim_by_runge_kutta(const Segment& segment);
   void aim_by_forces(const Segment& segment, ParticleSet& set);
+  void diffuse(const Segment& segment, std::span<const std::uint64_t> ids);
   [[nodiscard]] ForceStep::Fields fields() const;
   void aim_one(const Segment& segment, std::size_t i);
   void aim_in_flight(const Segment& segment, std::size_t begin, std::size_t end);
@@ -85,6 +88,7 @@ class Aiming {
   std::optional<VectorField> force_;  // accelerations, on top of gravity
   ForceStep forces_;
   double begin_ = 0.0;  // of the segment, s
+  std::uint64_t moment_ = 0;
   std::vector<Vec3> targets_;
 };
 

@@ -33,4 +33,18 @@ void move_held(const HeldMotion& motion, [[maybe_unused]] InstructionSet set) {
   portable::move_held(motion);
 }
 
+void draw_ways(const RandomWays& random, [[maybe_unused]] InstructionSet set) {
+#if defined(__x86_64__)
+  if (set == InstructionSet::avx2) return avx2::draw_ways(random);
+#endif
+  portable::draw_ways(random);
+}
+
+void add_thermal_motion(const ThermalMotion& motion, [[maybe_unused]] InstructionSet set) {
+#if defined(__x86_64__)
+  if (set == InstructionSet::avx2) return avx2::add_thermal_motion(motion);
+#endif
+  portable::add_thermal_motion(motion);
+}
+
 }  // namespace dartcast::detail

@@ -1,4 +1,5 @@
-// The fluid at particles, the forces of ForceOptions, and the exact motion under them: a particle in each lane of a vector.
+// The fluid at particles, the forces of ForceOptions, the exact motion under them, and random motion: a particle in each lane
+// of a vector.
 #pragma once
 
 #include <cstddef>
@@ -6,6 +7,7 @@
 #include <span>
 
 #include "base/instruction_set.hpp"
+#include "base/keyed_random.hpp"
 #include "dartcast/forces.hpp"
 #include "dartcast/particle_state.hpp"
 #include "dartcast/response.hpp"
@@ -57,6 +59,7 @@ struct ForceTerms {
   Vec3 gravity;
   Vec3 electric_field;
   Vec3 magnetic_field;
+  bool brownian = false;
 };
 
 /// Samples a field at points. Bit k of sampled[i] is set if this was done for particle 4 i + k: it is left to the caller if
@@ -85,6 +88,33 @@ struct HeldMotion {
 };
 void move_held(const HeldMotion& motion, InstructionSet set = best_instruction_set());
 
+/// Random ways: three normal deviates each, times a length. In the plane z is 0.
+struct RandomWays {
+  RandomMoment moment;
+  double length = 0.0;
+  bool planar = false;
+  std::span<const std::uint64_t> ids;
+  std::span<Vec3> ways;
+};
+void draw_ways(const RandomWays& random, InstructionSet set = best_instruction_set());
+
+/// The random motion that a fluid's molecules add within a time, in which velocities relax at these rates. Velocity and way are
+/// drawn together, from the exact law of G. E. Uhlenbeck and L. S. Ornstein, 1930.
+struct ThermalMotion {
+  RandomMoment moment;
+  bool planar = false;
+  double duration = 0.0;
+  double energy = 0.0;         ///< k T, J
+  double added_density = 0.0;  ///< of the fluid that moves along, kg / m^3
+  std::span<const std::uint64_t> ids;
+  std::span<const double> diameters;
+  std::span<const double> densities;
+  std::span<const double> rates;
+  std::span<Vec3> ends;  ///< and `ways`: are added to
+  std::span<Vec3> ways;
+};
+void add_thermal_motion(const ThermalMotion& motion, InstructionSet set = best_instruction_set());
+
 namespace portable {
 void sample_field(const FieldAtPoints& field, const StageParticles& particles, const SamplesOfField& samples,
                   std::span<std::uint8_t> sampled);
@@ -92,6 +122,8 @@ void shift_samples(const SamplesOfField& samples, std::span<const Vec3> ways);
 void apply_forces(const ForceTerms& terms, const LawParticles& particles, const LawSamples& samples,
                   const LawResult& result);
 void move_held(const HeldMotion& motion);
+void draw_ways(const RandomWays& random);
+void add_thermal_motion(const ThermalMotion& motion);
 }  // namespace portable
 namespace avx2 {
 void sample_field(const FieldAtPoints& field, const StageParticles& particles, const SamplesOfField& samples,
@@ -100,6 +132,8 @@ void shift_samples(const SamplesOfField& samples, std::span<const Vec3> ways);
 void apply_forces(const ForceTerms& terms, const LawParticles& particles, const LawSamples& samples,
                   const LawResult& result);
 void move_held(const HeldMotion& motion);
+void draw_ways(const RandomWays& random);
+void add_thermal_motion(const ThermalMotion& motion);
 }  // namespace avx2
 
 }  // namespace dartcast::detail

@@ -8,57 +8,15 @@
 
 #include "base/double4.inl"
 #include "base/elementary4.inl"
+#include "base/normal_deviates4.inl"
 #include "dartcast/predicates.hpp"
 #include "simulation/force_kernel.hpp"
+#include "simulation/rows4.inl"
 #include "simulation/simplex4.inl"
 
 DARTCAST_BEGIN_KERNEL
 namespace dartcast::detail::DARTCAST_SIMD {
 namespace {
-
-// The reverse of load_vec3x4().
-inline void store_vec3x4(const Vec3x4& four, Vec3* out) {
-  const Double4 xy01 = __builtin_shufflevector(four.x, four.y, 0, 4, 1, 5);
-  const Double4 xy23 = __builtin_shufflevector(four.x, four.y, 2, 6, 3, 7);
-  const Double4 yz1 = __builtin_shufflevector(four.y, four.z, 1, 5, 1, 5);
-  double* const at = &out->x;
-  store_doubles(__builtin_shufflevector(xy01, four.z, 0, 1, 4, 2), at);
-  store_doubles(__builtin_shufflevector(yz1, xy23, 0, 1, 4, 5), at + 4);
-  store_doubles(__builtin_shufflevector(xy23, four.z, 6, 2, 3, 7), at + 8);
-}
-
-// Four rows of arrays. Beyond the end the last row is loaded again, and not stored.
-class Rows4 {
- public:
-  Rows4(std::size_t first, std::size_t size)
-      : first_(first),
-        count_(static_cast<unsigned>(std::min<std::size_t>(4, size - first))),
-        at_(index4_from(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(size))) {}
-
-  [[nodiscard]] std::size_t at(unsigned k) const { return at_.at[k]; }
-  [[nodiscard]] unsigned count() const { return count_; }
-  [[nodiscard]] Vec3x4 load(std::span<const Vec3> all) const {
-    if (count_ == 4) return load_vec3x4(&all[first_]);
-    return load_vec3x4(all[at(0)], all[at(1)], all[at(2)], all[at(3)]);
-  }
-  [[nodiscard]] Double4 load(std::span<const double> all) const {
-    if (count_ == 4) return load_doubles(&all[first_]);
-    return Double4{all[at(0)], all[at(1)], all[at(2)], all[at(3)]};
-  }
-  void store(const Vec3x4& four, std::span<Vec3> all) const {
-    if (count_ == 4) return store_vec3x4(four, &all[first_]);
-    for (unsigned k = 0; k < count_; ++k) all[first_ + k] = {four.x[k], four.y[k], four.z[k]};
-  }
-  void store(const Double4& four, std::span<double> all) const {
-    if (count_ == 4) return store_doubles(four, &all[first_]);
-    for (unsigned k = 0; k < count_; ++k) all[first_ + k] = four[k];
-  }
-
- private:
-  std::size_t first_;
-  unsigned count_;
-  Index4 at_;
-};
 
 struct Gradient4 {
   Vec3x4 x, y, z;
@@ -327,6 +285,51 @@ class HeldKernel {
   double time_;
 };
 
+// With z = c t, the velocity has the variance s z phi (2 - z phi) with s = k T / m. Given the velocity's change dv, the way
+// has the mean t w dv with w = phi / (2 - z phi), and the variance 2 s t^2 (1 - 2 w) / z. Where 1 - 2 w would cancel, it is
+// z^2 / (2 - z phi) times the series of 1/6 - 2 z / 24 + 3 z^2 / 120 ...
+constexpr auto rest_terms = [] {
+  std::array<double, exponential_terms.size() - 1> terms{};
+  for (std::size_t k = 0; k < terms.size(); ++k) terms[k] = static_cast<double>(k + 1) * exponential_terms[k + 1];
+  return terms;
+}();
+
+class ThermalKernel {
+ public:
+  explicit ThermalKernel(const ThermalMotion& motion) : motion_(motion) {}
+
+  void add(const Rows4& rows) const {
+    const Double4 d = rows.load(motion_.diameters);
+    const Double4 mass = d * d * d * (rows.load(motion_.densities) + motion_.added_density) * (std::numbers::pi / 6.0);
+    const Double4 s = splat(motion_.energy) / mass;
+    const Double4 z = rows.load(motion_.rates) * splat(motion_.duration);
+    const Shares4 shares = shares_of(z);
+    const Double4 lost = z * shares.phi;
+    const Double4 w = shares.phi / (splat(2.0) - lost);
+    const Mask4 is_small = z <= splat(0.34);
+    const Double4 series = z * polynomial(rest_terms, splat(0.0) - z) / (splat(2.0) - lost);
+    const Double4 rest = is_small ? series : (splat(1.0) - 2.0 * w) / (is_small ? splat(1.0) : z);
+    const Double4 speed = root(s * lost * (splat(2.0) - lost));
+    const Double4 spread = root(2.0 * s * rest) * motion_.duration;
+    const auto ids = reinterpret_cast<Bits4>(rows.load(motion_.ids));
+    const std::array<Bits4, 4> a = random_bits(motion_.moment, ids, 0);
+    const std::array<Bits4, 4> b = random_bits(motion_.moment, ids, 1);
+    const SineCosine4 first = normal_pair(a[0], a[1]);
+    const SineCosine4 second = normal_pair(a[2], a[3]);
+    const SineCosine4 third = normal_pair(b[0], b[1]);
+    const Vec3x4 change = in_space({first.cosine, first.sine, second.cosine}) * speed;
+    const Vec3x4 aside = in_space({second.sine, third.cosine, third.sine}) * spread;
+    rows.store(rows.load(std::span<const Vec3>(motion_.ends)) + change, motion_.ends);
+    rows.store(rows.load(std::span<const Vec3>(motion_.ways)) + (change * (w * motion_.duration) + aside),
+               motion_.ways);
+  }
+
+ private:
+  [[nodiscard]] Vec3x4 in_space(const Vec3x4& v) const { return motion_.planar ? Vec3x4{v.x, v.y, splat(0.0)} : v; }
+
+  const ThermalMotion& motion_;
+};
+
 }  // namespace
 
 void sample_field(const FieldAtPoints& field, const StageParticles& particles, const SamplesOfField& samples,
@@ -356,6 +359,21 @@ void apply_forces(const ForceTerms& terms, const LawParticles& particles, const 
 void move_held(const HeldMotion& motion) {
   const HeldKernel kernel(motion);
   for (std::size_t i = 0; i < motion.starts.size(); i += 4) kernel.move(Rows4(i, motion.starts.size()));
+}
+
+void draw_ways(const RandomWays& random) {
+  for (std::size_t i = 0; i < random.ways.size(); i += 4) {
+    const Rows4 rows(i, random.ways.size());
+    const auto bits = random_bits(random.moment, reinterpret_cast<Bits4>(rows.load(random.ids)), 0);
+    const SineCosine4 first = normal_pair(bits[0], bits[1]);
+    const Double4 z = random.planar ? splat(0.0) : normal_pair(bits[2], bits[3]).cosine;
+    rows.store(Vec3x4{first.cosine, first.sine, z} * splat(random.length), random.ways);
+  }
+}
+
+void add_thermal_motion(const ThermalMotion& motion) {
+  const ThermalKernel kernel(motion);
+  for (std::size_t i = 0; i < motion.ways.size(); i += 4) kernel.add(Rows4(i, motion.ways.size()));
 }
 
 }  // namespace dartcast::detail::DARTCAST_SIMD

@@ -43,7 +43,8 @@ bool needs_fluid_density(Force term) {
     case Force::virtual_mass:
     case Force::saffman_mei: return true;
     case Force::stokes:
-    case Force::lorentz: break;
+    case Force::lorentz:
+    case Force::brownian: break;
   }
   return false;
 }
@@ -60,6 +61,7 @@ detail::ForceTerms terms_of(const SimulationOptions& options) {
   terms.virtual_mass = has_term(forces, Force::virtual_mass);
   terms.saffman_mei = has_term(forces, Force::saffman_mei);
   terms.lorentz = has_term(forces, Force::lorentz);
+  terms.brownian = has_term(forces, Force::brownian);
   terms.fluid = forces.fluid;
   terms.gravity = options.gravity;
   terms.electric_field = forces.electric_field;
@@ -77,10 +79,13 @@ void check_fluid(const ForceOptions& forces) {
   check(fluid.density, "density");
   check(fluid.viscosity, "viscosity");
   check(fluid.mean_free_path, "mean free path");
+  check(fluid.temperature, "temperature");
   if (fluid.density == 0.0 && std::any_of(forces.terms.begin(), forces.terms.end(), needs_fluid_density))
     throw InvalidArgument("simulation: the forces need the fluid's density: give it");
   if (fluid.viscosity == 0.0 && (has_drag(forces) || has_term(forces, Force::saffman_mei)))
     throw InvalidArgument("simulation: the forces need the fluid's viscosity: give it");
+  if (fluid.temperature == 0.0 && has_term(forces, Force::brownian))
+    throw InvalidArgument("simulation: the force brownian needs the fluid's temperature: give it");
 }
 
 void check_terms(const ForceOptions& forces) {
@@ -91,6 +96,8 @@ void check_terms(const ForceOptions& forces) {
   const int drags = (has_term(forces, Force::stokes) ? 1 : 0) + (has_term(forces, Force::schiller_naumann) ? 1 : 0) +
                     (has_term(forces, Force::putnam) ? 1 : 0);
   if (drags > 1) throw InvalidArgument("simulation: there are several laws of drag among the forces: give one of them");
+  if (drags == 0 && has_term(forces, Force::brownian))
+    throw InvalidArgument("simulation: the force brownian belongs to drag: give one of its laws, too");
 }
 
 // Particles that take part in the forces.
@@ -240,6 +247,7 @@ void ForceStep::predict_middle(const Segment& segment, const ParticleSet& set, s
 void ForceStep::finish(const Segment& segment, ParticleSet& set, std::span<Vec3> targets, std::size_t begin,
                        std::size_t end) {
   move(set, segment.duration, begin, end);
+  if (terms_.brownian) add_thermal_motion(segment, set, begin, end);
   const VectorField* field = segment.fields.velocity;
   const bool relative = field != nullptr && field->frame() == FieldFrame::mesh && motion_.deforms() && !segment.moving;
   const std::span<Vec3> velocities = set.velocities();
@@ -361,6 +369,23 @@ void ForceStep::move(const ParticleSet& set, double duration, std::size_t begin,
   detail::move_held({set.velocities().subspan(begin, size), std::span(fluid_.values).subspan(begin, size),
                      result(begin, size), duration, std::span(velocities_).subspan(begin, size),
                      std::span(ways_).subspan(begin, size)});
+}
+
+// With the rates of the middle.
+void ForceStep::add_thermal_motion(const Segment& segment, const ParticleSet& set, std::size_t begin, std::size_t end) {
+  const std::size_t size = end - begin;
+  const ParticleTable& t = set.table;
+  detail::add_thermal_motion({{options_.seed, RandomPurpose::brownian, segment.moment},
+                              environment_.map().dimension() == 2,
+                              segment.duration,
+                              boltzmann_constant * terms_.fluid.temperature,
+                              terms_.virtual_mass ? 0.5 * terms_.fluid.density : 0.0,
+                              t[t.id].subspan(begin, size),
+                              t[t.diameter].subspan(begin, size),
+                              t[t.density].subspan(begin, size),
+                              std::span(rates_).subspan(begin, size),
+                              std::span(velocities_).subspan(begin, size),
+                              std::span(ways_).subspan(begin, size)});
 }
 
 }  // namespace dartcast

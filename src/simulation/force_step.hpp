@@ -47,7 +47,8 @@ class ForceStep {
     Fields fields;
     double begin;
     double duration;
-    bool moving;  ///< particles have positions from before the last move
+    bool moving;           ///< particles have positions from before the last move
+    std::uint64_t moment;  ///< number of the segment in the run, for random numbers
   };
   /// Gives velocities and targets to all particles that are alive and not held. Throws what the law throws, and
   /// InvalidArgument if the law's values cannot be used. Velocities are then unchanged.
@@ -80,6 +81,7 @@ class ForceStep {
              std::size_t end);
   void call_law(const ParticleSet& set, std::span<const Vec3> velocities, double time);
   void move(const ParticleSet& set, double duration, std::size_t begin, std::size_t end);
+  void add_thermal_motion(const Segment& segment, const ParticleSet& set, std::size_t begin, std::size_t end);
   [[nodiscard]] LawResult result(std::size_t begin, std::size_t size);
   [[nodiscard]] LawParticles particles(const ParticleSet& set, std::span<const Vec3> velocities, std::size_t begin,
                                        std::size_t size) const;

@@ -75,6 +75,10 @@ void check(const SimulationOptions& o, bool planar) {
   if (!(o.drag >= 0.0) || !std::isfinite(o.drag))
     throw InvalidArgument("simulation: drag must be finite and not negative");
   if (!is_finite(o.gravity)) throw InvalidArgument("simulation: gravity must be finite");
+  if (!(o.diffusion >= 0.0) || !std::isfinite(o.diffusion))
+    throw InvalidArgument("simulation: diffusion must be finite and not negative");
+  if (o.diffusion > 0.0 && o.collisions)
+    throw InvalidArgument("simulation: spheres that collide have no random ways: leave collisions or diffusion out");
   if (o.substeps == 0) throw InvalidArgument("simulation: substeps must be at least 1");
   check_integrator(o);
   check_wall_motion(o);
@@ -147,6 +151,7 @@ void ParticleSystem::advance_segment(unsigned segment, std::vector<std::uint8_t>
   const double dt = options_.dt / options_.substeps;
   const bool moving = motion_.deforms() && segment == 0;
   aiming_.set_times(motion_.time() + segment * dt, dt);
+  aiming_.set_moment(motion_.steps() * options_.substeps + segment);
   if (collides()) {
     {
       const ScopeTimer timer(totals_.seconds_collide);

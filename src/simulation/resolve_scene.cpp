@@ -24,6 +24,7 @@ SimulationOptions options_of(const Scene& scene, Ranks* ranks) {
   options.gravity = scene.motion.gravity;
   options.drag = scene.motion.drag;
   options.forces = scene.motion.forces;
+  options.diffusion = scene.motion.diffusion;
   options.response = scene.contact.general;
   options.patch_responses = scene.contact.by_patch;
   options.substeps = scene.motion.substeps;

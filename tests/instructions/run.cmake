@@ -20,8 +20,8 @@ foreach(kind_and_bound still=274 moving=749 lattice=1890 long=2845 long_moving=8
   endif()
 endforeach()
 
-# A step with forces against one with a constant drag.
-foreach(kind drag forces)
+# Steps with forces against one with a constant drag.
+foreach(kind drag forces brownian)
   execute_process(
     COMMAND ${VALGRIND} --tool=callgrind --callgrind-out-file=/dev/null "--toggle-collect=dartcast::Simulation::step(*" ${PROGRAM} ${kind}
     RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE log)
@@ -35,7 +35,7 @@ foreach(kind drag forces)
   message(STATUS "${kind}: ${${kind}} instructions per particle-step")
 endforeach()
 math(EXPR allowed "${drag} * 5 / 2")
-if(forces GREATER allowed OR drag LESS 50)
+if(forces GREATER allowed OR brownian GREATER allowed OR drag LESS 50)
   set(wrong "${wrong} forces")
 endif()
 

@@ -3,8 +3,8 @@
 // vertex. The count is the code that Environment::advance() executes (run.cmake); the number of particle-steps is printed,
 // and how many steps were split. And `steps edits EDGE COUNT`:
 // edits of a box of EDGE^3 cells, each followed by the particles. `steps cut`: one cut through the wall of a vessel. `steps
-// drag` and `steps forces`: whole steps of drops in a flow, by a constant drag, and by Schiller-Naumann's with buoyancy. `steps
-// travel`: walks that have met no wall are packed for another rank, and unpacked, 10,000 at a time; it also prints times.
+// drag`, `steps forces` and `steps brownian`: whole steps of drops in a flow, by a constant drag, by Schiller-Naumann's with
+// buoyancy, and by these with Brownian motion. `steps travel`: walks that have met no wall are packed for another rank, and unpacked, 10,000 at a time; it also prints times.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -149,7 +149,7 @@ int rest_in_corner() {
 }
 
 // Drops of many sizes in a swirl, some 0.05 cells a step. The constant drag is about that of the drops.
-int drops(bool by_forces) {
+int drops(bool by_forces, bool thermal) {
   Environment environment = make_environment();
   SimulationOptions options;
   options.dt = 0.01;
@@ -157,7 +157,8 @@ int drops(bool by_forces) {
   options.drag = by_forces ? 0.0 : 30.0;
   if (by_forces) {
     options.forces.terms = {Force::schiller_naumann, Force::buoyancy};
-    options.forces.fluid = {1.2, 1.8e-5, 0.0};
+    options.forces.fluid = {1.2, 1.8e-5, 0.0, 300.0};
+    if (thermal) options.forces.terms.push_back(Force::brownian);
   }
   Simulation simulation(environment, options);
   std::vector<Vec3> flow;
@@ -205,7 +206,9 @@ int main(int argc, char** argv) {
   if (std::strcmp(kind, "corner") == 0) return rest_in_corner();
   if (std::strcmp(kind, "cut") == 0) return cut_vessel();
   if (std::strcmp(kind, "travel") == 0) return travel();
-  if (std::strcmp(kind, "drag") == 0 || std::strcmp(kind, "forces") == 0) return drops(kind[0] == 'f');
+  const bool thermal = std::strcmp(kind, "brownian") == 0;
+  if (thermal || std::strcmp(kind, "drag") == 0 || std::strcmp(kind, "forces") == 0)
+    return drops(kind[0] != 'd', thermal);
   const bool plane = std::strncmp(kind, "plane", 5) == 0;
   const bool moving = std::strstr(kind, "moving") != nullptr;
   const bool lattice = std::strcmp(kind, "lattice") == 0;

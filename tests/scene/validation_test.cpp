@@ -78,4 +78,43 @@ TEST(Validation, ChargesTurnAndDrift) {
   });
 }
 
+// The mean squares of velocities and ways along an axis, over all three.
+struct Spread {
+  double velocity = 0.0, way = 0.0;
+  Spread(const Simulation& s, const Vec3& start) {
+    const double n = 3.0 * static_cast<double>(s.particles().size());
+    for (std::size_t i = 0; i < s.particles().size(); ++i) {
+      const Vec3 way_of_one = s.particles()[i].position - start;
+      way += dot(way_of_one, way_of_one) / n;
+      velocity += dot(s.velocities()[i], s.velocities()[i]) / n;
+    }
+  }
+};
+
+constexpr double four_errors = 4.0 * 0.0102;  // sqrt(2 / (3 N)) with N = 6,400
+
+TEST(Validation, ParticlesDiffuseAsSixDT) {
+  run("diffusion.toml", [](const Simulation& s) {
+    ASSERT_EQ(s.particles().size(), 6400U);
+    const double truth = 2.0 * 2e-3 * 1e-2 * static_cast<double>(s.steps());
+    EXPECT_NEAR(Spread(s, {0.51, 0.52, 0.53}).way, truth, four_errors * truth) << s.steps();
+  });
+}
+
+// The steps do not count: the law is that of the whole time.
+TEST(Validation, SmallParticlesMoveAsTheirTemperatureSays) {
+  run("brownian.toml", [](const Simulation& s) {
+    ASSERT_EQ(s.particles().size(), 6400U);
+    const double d = 5e-8;
+    const double tau = 1000.0 * d * d / (18.0 * 1.8e-5);
+    const double thermal = 1.380649e-23 * 293.15 / (1000.0 * 3.14159265358979 / 6.0 * d * d * d);
+    const double z = 0.5 * static_cast<double>(s.steps());
+    const Spread spread(s, {5.1e-6, 5.2e-6, 5.3e-6});
+    const double velocity = thermal * (1.0 - std::exp(-2.0 * z));
+    const double way = thermal * tau * tau * (2.0 * z - 3.0 + 4.0 * std::exp(-z) - std::exp(-2.0 * z));
+    EXPECT_NEAR(spread.velocity, velocity, four_errors * velocity) << s.steps();
+    EXPECT_NEAR(spread.way, way, four_errors * way) << s.steps();
+  });
+}
+
 }  // namespace dartcast::validation_test

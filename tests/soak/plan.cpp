@@ -68,6 +68,7 @@ Scene Plan::scene() const {
   s.motion.gravity = o.gravity;
   s.motion.drag = o.drag;
   s.motion.forces = o.forces;
+  s.motion.diffusion = o.diffusion;
   s.contact.general = o.response;
   return s;
 }
@@ -85,6 +86,7 @@ SimulationOptions Plan::options(Ranks* ranks) const {
     o.integrator = Integrator::rk4;
   else if (has(17) && o.drag == 0.0 && !collides())
     o.forces = forces();
+  if (has(21) && !collides()) o.diffusion = 0.02 * scene_.edge * scene_.edge;
   if (collides()) o.collisions = CollisionOptions{.restitution = 0.5, .friction = 0.2};
   if (case_[Knob::simultaneous] != 0 && !collides() && !has_spheres())
     o.wall_motion = WallMotion::simultaneous;
@@ -121,7 +123,9 @@ ForceOptions Plan::forces() const {
   ForceOptions f;
   f.terms = {has(18) ? Force::schiller_naumann : Force::stokes, Force::buoyancy, Force::saffman_mei, Force::lorentz};
   if (!has(15)) f.terms.push_back(Force::virtual_mass);
+  if (has(22)) f.terms.push_back(Force::brownian);
   f.fluid = {1.2, 0.1 * scene_.edge * scene_.edge, has(19) ? 0.01 * scene_.edge : 0.0};
+  f.fluid.temperature = 1e-3 * std::pow(scene_.edge, 5.0) / boltzmann_constant;  // speeds of an edge a second or so
   f.magnetic_field = {0.0, 0.0, 2.0};
   return f;
 }
