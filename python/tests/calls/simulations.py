@@ -201,8 +201,9 @@ def of_states() -> Calls:
 
 def of_forces() -> Calls:
     drop = dc.records.Material(1e-4, 1000.0, 2.0)
-    forces = dc.records.ForceOptions([dc.records.Force.PUTNAM, dc.records.Force.LORENTZ], dc.records.Fluid(1.2, 1.8e-5))
-    own = dc.Simulation(environment(), dc.SimulationOptions(dt=0.1, forces=forces))
+    forces = dc.records.ForceOptions([dc.records.Force.PUTNAM, dc.records.Force.LORENTZ, dc.records.Force.BROWNIAN],
+                                     dc.records.Fluid(1.2, 1.8e-5, 0.0, 293.0))
+    own = dc.Simulation(environment(), dc.SimulationOptions(dt=0.1, forces=forces, diffusion=1e-6))
     own.add([[0.4, 0.4, 0.4]], [0.0, 0.0, 0.0], material=drop)
     arrays = {"LawParticles": "ids positions velocities diameters densities charges_per_mass user_data time",
               "LawSamples": "velocities gradients rates", "LawResult": "accelerations rates rotations"}
