@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "dartcast/vec3.hpp"
@@ -47,6 +48,21 @@ struct ForceOptions {
   Fluid fluid = {};
   Vec3 electric_field = {};  ///< V / m, everywhere the same
   Vec3 magnetic_field = {};  ///< T
+};
+
+/// Turbulent dispersion by a discrete random walk: eddies add velocities to the field's, whose components have the variance
+/// 2 k / 3 each. An eddy lives for 2 C_L k / epsilon, or until a particle with forces has crossed its size, C_mu^(3/4)
+/// k^(3/2) / epsilon. The dispersion of a long time is D = (2 k / 3) C_L k / epsilon. Random numbers depend on the seed, the
+/// particle's id and the step alone. Near walls, where turbulence is not isotropic, it brings too many small particles to
+/// the wall.
+struct TurbulenceOptions {
+  /// The names of the numbers of user data that have k at a particle's place; empty: there is no turbulence. A scene takes
+  /// them from arrays (MotionScene::sample). User data must also have eddy_x, eddy_y, eddy_z and eddy_left, in a row: a
+  /// scene adds them.
+  std::string k = {};
+  std::string epsilon = {};  ///< likewise, m^2 / s^3; or:
+  std::string omega = {};    ///< 1 / s: epsilon = 0.09 k omega
+  double lagrangian = 0.15;  ///< C_L, > 0: the Lagrangian integral time is C_L k / epsilon
 };
 
 /// The matter of a particle.

@@ -161,6 +161,26 @@ struct InletParticles {
   Waveform waveform = {};                        ///< of the rate
   std::vector<double> burst_times = {};          ///< s
   std::uint64_t burst_count = 0;                 ///< particles that enter at each of these times, together
+  /// kg / s, above 0: instead of `rate`, which is then this by the mean mass of a particle.
+  double mass_rate = 0.0;
+};
+
+/// A law of sizes.
+enum class SizeLaw : std::uint8_t {
+  normal,         ///< size: the mean, spread: the standard deviation, m
+  lognormal,      ///< size: the median, spread: the geometric standard deviation, > 1
+  rosin_rammler,  ///< the share 1 - exp(-(d / size)^spread) is smaller than d
+  table           ///< the diameters and shares that are given
+};
+/// A distribution of diameters. Shares are of the number of particles.
+struct SizeDistribution {
+  SizeLaw law = SizeLaw::normal;
+  double size = 0.0;  ///< m
+  double spread = 0.0;
+  double min = 0.0;                    ///< m: none is smaller; those beyond the cuts are drawn again
+  double max = 0x1p+100;               ///< m: and none greater
+  std::vector<double> diameters = {};  ///< m, of a table
+  std::vector<double> shares = {};     ///< one for each, of any sum
 };
 
 /// Particles of one kind: where they start, and how.
@@ -172,6 +192,8 @@ struct ParticlesScene {
   bool with_field = false;        ///< they start with the field's velocity at their places, instead of `velocity`
   Material material{};
   bool interception = false;  ///< each radius is half the diameter
+  /// Random particles and inlets: the diameter of each, by its id and the seed, in place of the material's.
+  std::optional<SizeDistribution> sizes = {};
 };
 
 /// Where a body has its particles: in a solid filled by spheres, on its surface, or in its volume.
@@ -269,7 +291,8 @@ struct MotionScene {
   std::vector<ArraySamples> sampled = {};
   double drag = 0.0;
   ForceOptions forces{};
-  double diffusion = 0.0;  ///< m^2 / s
+  double diffusion = 0.0;          ///< m^2 / s
+  TurbulenceOptions turbulence{};  ///< its names are among those of `sample`
   unsigned substeps = 1;
   Integrator integrator = Integrator::euler;
   WallMotion wall_motion = WallMotion::carried;

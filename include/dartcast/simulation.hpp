@@ -92,6 +92,7 @@ struct SimulationOptions {
   /// m^2 / s, >= 0: each segment adds a random way to each particle's, with the variance 2 D dt along each axis. Velocities
   /// do not have it. Random numbers depend on the seed, the particle's id and the step alone. Not with collisions.
   double diffusion = 0.0;
+  TurbulenceOptions turbulence = {};                         ///< it needs a field
   WallResponse response = {};                                ///< what happens at walls: Reflect{0.5}, Slide{}, ...
   std::map<std::string, WallResponse> patch_responses = {};  ///< at the walls of these patches, by name
   unsigned substeps = 1;  ///< > 0: a step's way is a polyline of so many segments; vertices move with the first one

@@ -93,3 +93,21 @@ def test_random_motion_is_that_of_seed_particle_and_step() -> None:
     mass = 1000.0 * np.pi / 6 * 1e-18
     assert abs(np.var(runs[0][0].velocities) * mass / (1.380649e-23 * 300.0) - 1) < 4 * np.sqrt(2 / 6000)
     assert abs(np.var(runs[0][1].positions) / (2 * 0.01 * 0.5) - 1) < 4 * np.sqrt(2 / 6000)
+
+
+def test_scenes_draw_sizes_and_eddies() -> None:
+    scene = dc.load_scene({
+        "environment": {"generator": "vessel"},
+        "particles": [{"count": 3000, "diameter": {"law": "lognormal", "median": 5e-6, "deviation": 1.5, "max": 1e-5}},
+                      {"inlet": "inlet", "mass_rate": 1e-6, "diameter": 5e-6, "density": 1000.0}],
+        "motion": {"field": "velocity", "turbulence": {"k": "path_length", "omega": "path_length"}},
+    })
+    simulation = dc.Simulation(scene)
+    for _ in range(3):
+        simulation.step()
+    sizes = simulation.diameters[:3000]
+    assert sizes.max() <= 1e-5 and len(np.unique(sizes)) == 3000
+    assert simulation.totals.injected == int(3e-3 * 1e-6 / (1000.0 * np.pi / 6 * 5e-6**3))
+    assert simulation.options.user_data[-4:] == ["eddy_x", "eddy_y", "eddy_z", "eddy_left"]
+    normal = dc.formats.SizeDistribution("normal", 1.0, 0.1)
+    assert normal.law == dc.formats.SizeLaw.NORMAL and normal.min == 0.0

@@ -48,6 +48,21 @@ void read_field(TomlTable& motion, const char* key, const std::filesystem::path&
   }
 }
 
+// The arrays are sampled.
+void read_turbulence(TomlTable t, MotionScene& scene) {
+  TurbulenceOptions& turbulence = scene.turbulence;
+  t.require("k", "the name of an array of k, m^2/s^2");
+  t.get("k", turbulence.k);
+  const bool by_epsilon = t.get("epsilon", turbulence.epsilon);
+  if (t.get("omega", turbulence.omega) == by_epsilon) t.fail("", "give the name of an array as epsilon or as omega");
+  t.get("lagrangian", turbulence.lagrangian, Range::positive);
+  for (const std::string& name : {turbulence.k, by_epsilon ? turbulence.epsilon : turbulence.omega}) {
+    if (name.empty()) t.fail("", "names of arrays must not be empty");
+    if (std::count(scene.sample.begin(), scene.sample.end(), name) == 0) scene.sample.push_back(name);
+  }
+  t.finish();
+}
+
 }  // namespace
 
 void read_fields(TomlTable& motion, const std::filesystem::path& folder, MotionScene& scene) {
@@ -55,7 +70,9 @@ void read_fields(TomlTable& motion, const std::filesystem::path& folder, MotionS
   read_field(motion, "force", folder, scene.force);
   if (motion.get("sample", scene.sample) && std::count(scene.sample.begin(), scene.sample.end(), "") != 0)
     motion.fail("sample", "sample must be names of arrays");
+  if (motion.has("turbulence")) read_turbulence(motion.table("turbulence"), scene);
   const bool has_field = scene.field.given();
+  if (!has_field && motion.has("turbulence")) motion.fail("turbulence", "turbulence needs a field: give field");
   if (motion.is_table("field") && motion.has("field_frame"))
     motion.fail("field_frame", "field_frame belongs to a field that is a name: say frame in the field's table");
   if (motion.get("field_frame", scene.field.frame, {{"space", FieldFrame::space}, {"mesh", FieldFrame::mesh}}) &&

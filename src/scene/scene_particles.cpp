@@ -49,11 +49,13 @@ void read_bursts(TomlTable t, InletParticles& inlet) {
 // Keys that an inlet or a cone has.
 void read_flow(TomlTable& t, InletParticles& inlet) {
   const bool enters = inlet.cone || !inlet.patch.empty();
-  const bool has_rate = t.get("rate", inlet.rate, Range::not_negative);
+  const bool has_mass_rate = t.get("mass_rate", inlet.mass_rate, Range::not_negative);
+  const bool has_rate = t.get("rate", inlet.rate, Range::not_negative) || has_mass_rate;
+  if (has_mass_rate && t.has("rate")) t.fail("mass_rate", "give rate or mass_rate, not both");
   const bool has_bursts = t.has("bursts");
   if (has_bursts) read_bursts(t.table("bursts"), inlet);
   if (enters && !has_rate && !has_bursts)
-    t.fail("", "an inlet or a cone needs rate (particles per second), bursts, or both");
+    t.fail("", "an inlet or a cone needs rate (particles per second) or mass_rate, bursts, or both");
   if (t.has("waveform")) {
     if (!has_rate) t.fail("waveform", "waveform is about a rate: give rate");
     inlet.waveform = read_waveform(t.table("waveform"));
@@ -62,7 +64,10 @@ void read_flow(TomlTable& t, InletParticles& inlet) {
       t.get("profile", inlet.profile, {{"uniform", InletProfile::uniform}, {"flux", InletProfile::flux}});
   if (has_profile && inlet.patch.empty()) t.fail("profile", "profile belongs to an inlet");
   if (!enters && (has_rate || has_bursts))
-    t.fail(has_rate ? "rate" : "bursts", "rate or bursts, and an inlet or a cone belong together");
+    t.fail(has_mass_rate ? "mass_rate"
+           : has_rate    ? "rate"
+                         : "bursts",
+           "rate or bursts, and an inlet or a cone belong together");
 }
 
 // A vector, or "field".
@@ -80,8 +85,53 @@ void read_velocity(TomlTable& t, ParticlesScene& scene, const InletParticles& in
   scene.with_field = with_field;
 }
 
+// The names of a distribution's numbers, by its law.
+struct SizeKeys {
+  const char* size;
+  const char* spread;
+};
+SizeKeys keys_of(SizeLaw law) {
+  switch (law) {
+    case SizeLaw::normal: return {"mean", "deviation"};
+    case SizeLaw::lognormal: return {"median", "deviation"};
+    case SizeLaw::rosin_rammler: return {"scale", "exponent"};
+    case SizeLaw::table: break;
+  }
+  return {"diameters", "shares"};
+}
+
+SizeDistribution read_sizes(TomlTable t) {
+  SizeDistribution sizes;
+  t.require("law", "normal, lognormal, rosin-rammler or table");
+  t.get("law", sizes.law,
+        {{"normal", SizeLaw::normal},
+         {"lognormal", SizeLaw::lognormal},
+         {"rosin-rammler", SizeLaw::rosin_rammler},
+         {"table", SizeLaw::table}});
+  const SizeKeys keys = keys_of(sizes.law);
+  t.require(keys.size, sizes.law == SizeLaw::table ? "metres" : "m");
+  t.require(keys.spread, "see docs/scene.md");
+  if (sizes.law == SizeLaw::table) {
+    t.get(keys.size, sizes.diameters);
+    t.get(keys.spread, sizes.shares);
+    if (sizes.diameters.empty() || sizes.diameters.size() != sizes.shares.size())
+      t.fail("shares",
+             fmt::format("there are {} shares for {} diameters", sizes.shares.size(), sizes.diameters.size()));
+  } else {
+    t.get(keys.size, sizes.size, Range::positive);
+    t.get(keys.spread, sizes.spread, Range::positive);
+    t.get("min", sizes.min, Range::not_negative);
+    t.get("max", sizes.max, Range::positive);
+  }
+  t.finish();
+  return sizes;
+}
+
 void read_material(TomlTable& t, ParticlesScene& scene) {
-  t.get("diameter", scene.material.diameter, Range::positive);
+  if (t.is_table("diameter"))
+    scene.sizes = read_sizes(t.table("diameter"));
+  else
+    t.get("diameter", scene.material.diameter, Range::positive);
   t.get("density", scene.material.density, Range::positive);
   t.get("charge_per_mass", scene.material.charge_per_mass, {-Range::unlimited, Range::unlimited});
   if (t.get("interception", scene.interception) && t.has("radius"))
@@ -104,6 +154,8 @@ ParticlesScene read_particles(TomlTable& t, const std::filesystem::path& folder)
   if (has_cone) inlet.cone = read_cone(t.table("cone"));
   read_flow(t, inlet);
   read_velocity(t, scene, inlet);
+  if (!positions.empty() && scene.sizes)
+    t.fail("diameter", "a distribution is for random particles and inlets: give each position its diameter");
   if (!positions.empty()) {
     scene.source = PlacedParticles{folder / positions};
   } else if (inlet.cone || !inlet.patch.empty()) {

@@ -26,7 +26,11 @@ constexpr std::size_t tracer_grain = 256;
 
 Aiming::Aiming(const Environment& environment, Followers& followers, const MovingVertices& motion,
                const SimulationOptions& options)
-    : environment_(environment), motion_(motion), options_(options), forces_(environment, motion, options) {
+    : environment_(environment),
+      motion_(motion),
+      options_(options),
+      eddies_(options, environment.map().dimension() == 2),
+      forces_(environment, motion, options, eddies_) {
   followers.add([this](const ComplexEditReport& edit, OrphanPolicy /*orphaned*/) {
     if (field_) field_->update_after_edit(edit, environment_.complex());
     if (force_) force_->update_after_edit(edit, environment_.complex());
@@ -37,6 +41,7 @@ void Aiming::load_step() {
   if (options_.integrator == Integrator::rk4 && !field_)
     throw InvalidArgument(
         "simulation: the integrator rk4 follows a velocity field, but there is none: call set_field()");
+  if (eddies_.act()) check_field("turbulence");
   if (forces_.acts()) forces_.check(fields());
   if (field_) field_->hold(motion_.time(), motion_.time() + options_.dt);
   if (force_) force_->hold(motion_.time(), motion_.time() + options_.dt);
@@ -115,11 +120,27 @@ Aiming::Segment Aiming::segment_of(ParticleSet& set, double dt, bool moving) {
 
 void Aiming::aim(ParticleSet& set, double dt, bool moving) {
   const Segment segment = segment_of(set, dt, moving);
-  if (forces_.acts())
+  if (forces_.acts()) {
     aim_by_forces(segment, set);
-  else
+  } else {
     options_.integrator == Integrator::rk4 ? aim_by_runge_kutta(segment) : aim_at_field(segment);
+    if (eddies_.act()) add_eddies(segment, set);
+  }
   if (options_.diffusion > 0.0) diffuse(segment, set.ids());
+}
+
+// Particles that follow the field follow the eddy; drag takes them a share of the way to its velocity.
+void Aiming::add_eddies(const Segment& segment, ParticleSet& set) {
+  const RandomMoment moment = eddies_.moment(moment_);
+  const double share = options_.drag > 0.0 ? segment.lost : 1.0;
+  parallel_for(targets_.size(), aim_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (segment.statuses[i] != ParticleStatus::alive || segment.particles[i].held) continue;
+      const Vec3 change = eddies_.velocity(set.user_data(i), moment, set.ids()[i], segment.dt, {}) * share;
+      segment.velocities[i] += change;
+      targets_[i] = flushed(targets_[i] + change * segment.dt);
+    }
+  });
 }
 
 void Aiming::diffuse(const Segment& segment, std::span<const std::uint64_t> ids) {

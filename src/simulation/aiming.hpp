@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dartcast/simulation.hpp"
+#include "simulation/eddies.hpp"
 #include "simulation/flow_aim.hpp"
 #include "simulation/force_step.hpp"
 #include "simulation/moving_vertices.hpp"
@@ -38,6 +39,9 @@ class Aiming {
   /// Reads what the next step needs of the fields' files, before that step changes anything. Throws as
   /// VectorField::hold(), and InvalidArgument if an integrator has no field to follow.
   void load_step();
+
+  [[nodiscard]] const Eddies& eddies() const { return eddies_; }
+  [[nodiscard]] std::size_t numbers_of_eddies() const { return eddies_.act() ? eddy_numbers.size() : 0; }
 
   /// Brings the fields to the times of a segment of a step.
   void set_times(double begin, double duration);
@@ -70,6 +74,7 @@ class Aiming {
   void aim_at_field(const Segment& segment);
   void aim_by_runge_kutta(const Segment& segment);
   void aim_by_forces(const Segment& segment, ParticleSet& set);
+  void add_eddies(const Segment& segment, ParticleSet& set);
   void diffuse(const Segment& segment, std::span<const std::uint64_t> ids);
   [[nodiscard]] ForceStep::Fields fields() const;
   void aim_one(const Segment& segment, std::size_t i);
@@ -86,6 +91,7 @@ class Aiming {
   const SimulationOptions& options_;
   std::optional<VelocityField> field_;
   std::optional<VectorField> force_;  // accelerations, on top of gravity
+  Eddies eddies_;
   ForceStep forces_;
   double begin_ = 0.0;  // of the segment, s
   std::uint64_t moment_ = 0;

@@ -143,8 +143,9 @@ std::string wrong_material(const Material& material, const ForceOptions& forces)
   return {};
 }
 
-ForceStep::ForceStep(const Environment& environment, const MovingVertices& motion, const SimulationOptions& options)
-    : environment_(environment), motion_(motion), options_(options), terms_(terms_of(options)) {}
+ForceStep::ForceStep(const Environment& environment, const MovingVertices& motion, const SimulationOptions& options,
+                     const Eddies& eddies)
+    : environment_(environment), motion_(motion), options_(options), eddies_(eddies), terms_(terms_of(options)) {}
 
 void ForceStep::check(const Fields& fields) const {
   const auto needs = [&](bool has_it, const char* what, const char* remedy) {
@@ -207,6 +208,7 @@ void ForceStep::aim(const Segment& segment, ParticleSet& set, std::span<Vec3> ta
   rates_.resize(n);
   velocities_.resize(n);
   ways_.resize(n);
+  if (eddies_.act()) eddy_velocities_.resize(n);
   const auto blocks = [&](auto&& make) { parallel_for(n, force_grain, environment_.threads(), make); };
   if (!law_) {
     blocks([&](std::size_t begin, std::size_t end) {
@@ -223,13 +225,31 @@ void ForceStep::aim(const Segment& segment, ParticleSet& set, std::span<Vec3> ta
   blocks([&](std::size_t begin, std::size_t end) { finish(segment, set, targets, begin, end); });
 }
 
-void ForceStep::sample_start(const Segment& segment, const ParticleSet& set, std::size_t begin, std::size_t end) {
+void ForceStep::sample_start(const Segment& segment, ParticleSet& set, std::size_t begin, std::size_t end) {
   if (segment.fields.velocity != nullptr) sample(segment, *segment.fields.velocity, set, 0, {}, fluid_, begin, end);
+  if (eddies_.act()) draw_eddies(segment, set, begin, end);
   if (segment.fields.force != nullptr) sample(segment, *segment.fields.force, set, 0, {}, force_, begin, end);
   if (law_) {
     for (std::size_t i = begin; i < end; ++i) positions_[i] = set.states[i].position;
   }
   apply(segment, set, set.velocities(), begin, end);
+}
+
+// An eddy is crossed with Stokes' relaxation time.
+void ForceStep::draw_eddies(const Segment& segment, ParticleSet& set, std::size_t begin, std::size_t end) {
+  const RandomMoment moment = eddies_.moment(segment.moment);
+  const ParticleTable& t = std::as_const(set).table;
+  for (std::size_t i = begin; i < end; ++i) {
+    eddy_velocities_[i] = {};
+    if (!takes_part(set.states[i], set.statuses()[i])) continue;
+    const double d = t[t.diameter][i];
+    Eddies::Crossing crossing;
+    if (terms_.drag != detail::ForceTerms::Drag::none)
+      crossing = {norm(fluid_.values[i] - set.velocities()[i]),
+                  t[t.density][i] * d * d / (18.0 * terms_.fluid.viscosity)};
+    eddy_velocities_[i] = eddies_.velocity(set.user_data(i), moment, set.ids()[i], segment.duration, crossing);
+    fluid_.values[i] += eddy_velocities_[i];
+  }
 }
 
 void ForceStep::predict_middle(const Segment& segment, const ParticleSet& set, std::size_t begin, std::size_t end) {
@@ -334,7 +354,11 @@ void ForceStep::continue_samples(const Segment& segment, const VectorField& fiel
     relative[i] = goes_along ? ways_[k] - samples.mesh[k] * (0.5 * segment.duration) : ways_[k];
   }
   const std::span<const Vec3> ways = std::span(relative).first(size);
-  if (!field.steady() || (needs_rates() && segment.moving)) sample(segment, field, set, 1, ways, samples, begin, end);
+  if (!field.steady() || (needs_rates() && segment.moving)) {
+    sample(segment, field, set, 1, ways, samples, begin, end);
+    for (std::size_t i = begin; &samples == &fluid_ && eddies_.act() && i < end; ++i)
+      samples.values[i] += eddy_velocities_[i];
+  }
   if (field.place() == FieldPlace::points) detail::shift_samples(samples.block(begin, size), ways);
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dartcast/simulation.hpp"
+#include "simulation/eddies.hpp"
 #include "simulation/force_kernel.hpp"
 #include "simulation/moving_vertices.hpp"
 #include "simulation/particle_set.hpp"
@@ -27,7 +28,8 @@ void check_forces(const SimulationOptions& options, bool planar);
 class ForceStep {
  public:
   /// All outlive it.
-  ForceStep(const Environment& environment, const MovingVertices& motion, const SimulationOptions& options);
+  ForceStep(const Environment& environment, const MovingVertices& motion, const SimulationOptions& options,
+            const Eddies& eddies);
 
   void set_law(ParticleLaw law) { law_ = std::move(law); }
   [[nodiscard]] bool acts() const { return law_ || !options_.forces.terms.empty(); }
@@ -68,9 +70,10 @@ class ForceStep {
   };
 
   [[nodiscard]] bool needs_rates() const { return law_ || terms_.pressure_gradient || terms_.virtual_mass; }
-  void sample_start(const Segment& segment, const ParticleSet& set, std::size_t begin, std::size_t end);
+  void sample_start(const Segment& segment, ParticleSet& set, std::size_t begin, std::size_t end);
   void predict_middle(const Segment& segment, const ParticleSet& set, std::size_t begin, std::size_t end);
   void finish(const Segment& segment, ParticleSet& set, std::span<Vec3> targets, std::size_t begin, std::size_t end);
+  void draw_eddies(const Segment& segment, ParticleSet& set, std::size_t begin, std::size_t end);
   void sample(const Segment& segment, const VectorField& field, const ParticleSet& set, std::size_t moment,
               std::span<const Vec3> ways, Sampled& to, std::size_t begin, std::size_t end) const;
   void sample_one(const Segment& segment, const VectorField& field, const ParticleState& state, std::size_t moment,
@@ -90,6 +93,7 @@ class ForceStep {
   const Environment& environment_;
   const MovingVertices& motion_;
   const SimulationOptions& options_;
+  const Eddies& eddies_;
   detail::ForceTerms terms_;
   ParticleLaw law_;
   Sampled fluid_;
@@ -99,7 +103,8 @@ class ForceStep {
   std::vector<Vec3> rotations_;
   std::vector<Vec3> velocities_;  // in the middle, then at the end
   std::vector<Vec3> ways_;        // to there
-  std::vector<Vec3> positions_;   // for the law
+  std::vector<Vec3> eddy_velocities_;
+  std::vector<Vec3> positions_;  // for the law
 };
 
 }  // namespace dartcast

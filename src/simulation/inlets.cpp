@@ -46,6 +46,19 @@ void check_rate(const InletParticles& inlet, double largest_factor, double dt) {
   }
 }
 
+// Particles a second.
+double number_rate(const InletParticles& inlet, const Material& material, const std::optional<SizeSampler>& sizes) {
+  const double d = material.diameter;
+  const double mass = 3.14159265358979323846 / 6.0 * material.density * (sizes ? sizes->mean_cube() : d * d * d);
+  if (!(inlet.mass_rate >= 0.0) || inlet.rate != 0.0)
+    throw InvalidArgument(fmt::format(
+        "simulation: an inlet's mass rate is {}: it must not be negative, and there must be no rate beside it",
+        inlet.mass_rate));
+  if (!(mass > 0.0))
+    throw InvalidArgument("simulation: an inlet's mass rate needs particles of a diameter and density");
+  return inlet.mass_rate / mass;
+}
+
 }  // namespace
 
 Vec3 direction_in(const InletCone& cone, unsigned dimension, KeyedRandom& random) {
@@ -80,8 +93,12 @@ void Inlets::add(const ParticlesScene& group, const InletParticles& inlet, std::
                  group.radius,
                  group.user_data,
                  group.material,
+                 {},
+                 group.interception,
                  group.with_field || by_flux};
-  check_rate(inlet, added.waveform.largest_factor(), options_.dt);
+  if (group.sizes) added.sizes.emplace(*group.sizes, options_.seed);
+  if (inlet.mass_rate != 0.0) added.scene.rate = number_rate(inlet, group.material, added.sizes);
+  check_rate(added.scene, added.waveform.largest_factor(), options_.dt);
   if (added.with_field) aiming_.check_field("an inlet with the field's velocity");
   if (patch) {
     added.sampler.emplace(environment_.complex(), *patch, part);
@@ -113,8 +130,12 @@ void Inlets::inject(const std::optional<SampledPart>& part, const std::function<
     const std::uint64_t before = count_up_to(inlet, motion_.steps());
     const std::uint64_t after = count_up_to(inlet, motion_.steps() + 1);
     if (after <= before) continue;
-    Injection injection{
-        {}, after - before, {inlet.velocity, inlet.radius, inlet.user_data, inlet.material}, nullptr, inlet.with_field};
+    Injection injection{{},
+                        after - before,
+                        {inlet.velocity, inlet.radius, inlet.user_data, inlet.material,
+                         inlet.sizes ? &*inlet.sizes : nullptr, inlet.interception},
+                        nullptr,
+                        inlet.with_field};
     if (inlet.sampler) {
       inject_at_patch(inlet, injection, add);
       continue;

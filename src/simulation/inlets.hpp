@@ -13,6 +13,7 @@
 #include "simulation/particle_set.hpp"
 #include "simulation/rate_integral.hpp"
 #include "simulation/seeding.hpp"
+#include "simulation/size_sampler.hpp"
 
 namespace dartcast {
 
@@ -60,6 +61,8 @@ class Inlets {
     double radius;
     std::vector<double> user_data;
     Material material;
+    std::optional<SizeSampler> sizes;
+    bool interception;
     bool with_field;
   };
 

@@ -9,6 +9,7 @@
 
 #include "dartcast/error.hpp"
 #include "simulation/force_step.hpp"
+#include "simulation/size_sampler.hpp"
 
 namespace dartcast {
 
@@ -18,7 +19,7 @@ void check(const NewParticle& particle, const Environment& environment, const Si
     throw InvalidArgument(fmt::format("simulation: {} ", fmt::format(fmt::runtime(whose), number)) +
                           fmt::format(fmt::runtime(what), values...));
   };
-  const auto& [v, radius, numbers, material] = particle;
+  const auto& [v, radius, numbers, material, sizes, interception] = particle;
   if (!is_finite(v)) fail("velocity must be finite");
   if (environment.map().dimension() == 2 && v.z != 0.0)
     fail("velocity is ({}, {}, {}): in the plane its z must be 0", v.x, v.y, v.z);
@@ -37,13 +38,15 @@ void ParticleSet::complete(std::uint64_t id, const NewParticle& particle) {
   table.append_zeros(1);
   table[table.id][i] = id;
   table[table.velocity][i] = particle.velocity;
-  table[table.radius][i] = particle.radius;
-  table[table.diameter][i] = particle.material.diameter;
+  const double diameter = particle.sizes != nullptr ? particle.sizes->diameter(id) : particle.material.diameter;
+  const double radius = particle.sizes != nullptr && particle.interception ? 0.5 * diameter : particle.radius;
+  table[table.radius][i] = radius;
+  table[table.diameter][i] = diameter;
   table[table.density][i] = particle.material.density;
   table[table.charge_per_mass][i] = particle.material.charge_per_mass;
   const std::span<double> numbers = table[table.user_data].last(particle.user_data.size());
   std::copy(particle.user_data.begin(), particle.user_data.end(), numbers.begin());
-  if (particle.radius > 0.0) ++spheres;
+  if (radius > 0.0) ++spheres;
 }
 
 void ParticleSet::remove(std::span<const std::uint8_t> marks) {

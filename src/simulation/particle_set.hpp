@@ -42,12 +42,16 @@ struct SavedParticles : ParticleTable {
   Column<Weights> held_weights;
 };
 
+class SizeSampler;
+
 /// The motion that a particle starts with, and its user's numbers; none of these: zeros.
 struct NewParticle {
   Vec3 velocity;
   double radius = 0.0;
   std::span<const double> user_data;
   Material material = {};
+  const SizeSampler* sizes = nullptr;  ///< none: the material's diameter and the radius above
+  bool interception = false;           ///< with sizes
 };
 
 /// Row i of the table is that of state i, but while particles are added.

@@ -10,6 +10,7 @@
 #include "base/are_several.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_selection.hpp"
+#include "simulation/eddies.hpp"
 #include "simulation/mesh_arrays.hpp"
 #include "simulation/resolved_scene.hpp"
 #include "simulation/scene_environment.hpp"
@@ -25,6 +26,7 @@ SimulationOptions options_of(const Scene& scene, Ranks* ranks) {
   options.drag = scene.motion.drag;
   options.forces = scene.motion.forces;
   options.diffusion = scene.motion.diffusion;
+  options.turbulence = scene.motion.turbulence;
   options.response = scene.contact.general;
   options.patch_responses = scene.contact.by_patch;
   options.substeps = scene.motion.substeps;
@@ -151,6 +153,8 @@ void resolve_on(const MeshData& mesh, const Scene& scene, Threads threads, Resol
   resolved.motion = motion_of(scene, mesh, complex, points);
   for (const SampledField& f : resolved.motion.sampled)
     resolved.options.user_data.insert(resolved.options.user_data.end(), f.names.begin(), f.names.end());
+  if (!scene.motion.turbulence.k.empty())
+    resolved.options.user_data.insert(resolved.options.user_data.end(), eddy_numbers.begin(), eddy_numbers.end());
   resolved.events = events_of(scene, mesh, complex.map());
 }
 

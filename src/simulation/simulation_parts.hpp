@@ -50,11 +50,14 @@ struct Simulation::Parts {
     particles.set_part(*part);
   }
 
-  /// A group with its radius, and with zeros for the sampled numbers behind its user's.
+  /// A group with its radius, with one of its diameters, and with zeros for the numbers behind its user's: those sampled, and its eddy.
   [[nodiscard]] ParticlesScene completed(ParticlesScene group) {
+    if (group.sizes) group.material.diameter = group.sizes->size;
+    if (group.sizes && group.sizes->law == SizeLaw::table && !group.sizes->diameters.empty())
+      group.material.diameter = group.sizes->diameters.front();
     if (group.interception) group.radius = 0.5 * group.material.diameter;
     std::vector<double>& data = group.user_data;
-    if (!data.empty()) data.resize(data.size() + particles.sampled().size());
+    if (!data.empty()) data.resize(data.size() + particles.sampled().size() + particles.aiming().numbers_of_eddies());
     return group;
   }
 

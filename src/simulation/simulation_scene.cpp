@@ -1,12 +1,14 @@
 // Makes a simulation from a scene: looks up what it names, then builds from that alone.
 #include <fmt/format.h>
 
+#include <optional>
 #include <utility>
 
 #include "dartcast/error.hpp"
 #include "simulation/balance.hpp"
 #include "simulation/resolved_scene.hpp"
 #include "simulation/simulation_parts.hpp"
+#include "simulation/size_sampler.hpp"
 
 namespace dartcast {
 
@@ -70,10 +72,15 @@ void Simulation::add(const ParticlesScene& group) {
   if (whole.with_field) particles.aiming().check_field("particles with the field's velocity");
   const std::size_t first = particles.set().states.size();
   if (const auto* placed = std::get_if<PlacedParticles>(&whole.source)) {
+    if (whole.sizes)
+      throw InvalidArgument("simulation: sizes are drawn for random particles and inlets: give each seed its diameter");
     add_placed(*this, whole, *placed);
   } else {
-    add_random(std::get<RandomParticles>(whole.source).count, whole.velocity, whole.radius, whole.user_data,
-               whole.material);
+    std::optional<SizeSampler> sizes;
+    if (whole.sizes) sizes.emplace(*whole.sizes, options().seed);
+    particles.add_random(
+        std::get<RandomParticles>(whole.source).count,
+        {whole.velocity, whole.radius, whole.user_data, whole.material, sizes ? &*sizes : nullptr, whole.interception});
   }
   if (whole.with_field) particles.aiming().start_with_field(particles.set(), first, time());
 }

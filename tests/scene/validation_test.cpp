@@ -1,6 +1,7 @@
 // The scenes of scenes/validation against closed forms and the roots of the laws: docs/validation.md.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -113,6 +114,45 @@ TEST(Validation, SmallParticlesMoveAsTheirTemperatureSays) {
     const double velocity = thermal * (1.0 - std::exp(-2.0 * z));
     const double way = thermal * tau * tau * (2.0 * z - 3.0 + 4.0 * std::exp(-z) - std::exp(-2.0 * z));
     EXPECT_NEAR(spread.velocity, velocity, four_errors * velocity) << s.steps();
+    EXPECT_NEAR(spread.way, way, four_errors * way) << s.steps();
+  });
+}
+
+// The greatest distance of the sizes' shares from the distribution function, by A. Kolmogorov and N. Smirnov: it is above
+// 1.95 / sqrt(n) for one right sample in 1000.
+TEST(Validation, SizesHaveTheirDistribution) {
+  const auto lognormal = [](double d) { return 0.5 * std::erfc(-std::log(d / 5e-6) / std::log(1.8) / std::sqrt(2.0)); };
+  const auto rosin_rammler = [](double d) { return 1.0 - std::exp(-std::pow(d / 5e-6, 2.5)); };
+  const auto distance = [](std::vector<double> d, auto&& below, double min, double max) {
+    std::sort(d.begin(), d.end());
+    double most = 0.0;
+    for (std::size_t i = 0; i < d.size(); ++i) {
+      const double share = (below(d[i]) - below(min)) / (below(max) - below(min));
+      const double n = static_cast<double>(d.size());
+      most = std::max(
+          {most, std::abs(share - static_cast<double>(i) / n), std::abs(share - static_cast<double>(i + 1) / n)});
+    }
+    return most;
+  };
+  run("sizes.toml", [&](const Simulation& s) {
+    ASSERT_EQ(s.particles().size(), 10'000U);
+    const auto middle = s.diameters().begin() + 5000;
+    EXPECT_LT(distance({s.diameters().begin(), middle}, lognormal, 1e-6, 2e-5), 1.95 / std::sqrt(5000.0));
+    EXPECT_LT(distance({middle, s.diameters().end()}, rosin_rammler, 1e-6, 1e-5), 1.95 / std::sqrt(5000.0));
+  });
+}
+
+// Each component of the velocity has the variance 2 k / 3, and the correlation 1 - s / life. The way follows by G. I. Taylor,
+// 1921.
+TEST(Validation, TurbulenceDispersesAsTaylorSays) {
+  run("turbulence.toml", [](const Simulation& s) {
+    ASSERT_EQ(s.particles().size(), 6400U);
+    const double variance = 2.0 / 3.0 * 0.015;
+    const double life = 2.0 * 0.15 * 0.015 / 0.0225;
+    const double t = 1e-2 * static_cast<double>(s.steps());
+    const Spread spread(s, {0.01, 0.02, 0.03});
+    const double way = variance * (t < life ? t * t - t * t * t / (3.0 * life) : life * t - life * life / 3.0);
+    EXPECT_NEAR(spread.velocity, variance, four_errors * variance) << s.steps();
     EXPECT_NEAR(spread.way, way, four_errors * way) << s.steps();
   });
 }

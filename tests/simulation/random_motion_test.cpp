@@ -17,6 +17,7 @@
 #include "dartcast/generators.hpp"
 #include "dartcast/scene.hpp"
 #include "dartcast/simulation.hpp"
+#include "simulation/eddies.hpp"
 #include "simulation/force_kernel.hpp"
 #include "simulation/simulation_state.hpp"
 #include "support/expectations.hpp"
@@ -309,6 +310,7 @@ Scene shaken() {
   entering.source = InletParticles{"xmin", 400.0};
   entering.velocity = {1.0, 0.0, 0.0};
   entering.material = {2e-4, 500.0, 0.0};
+  entering.sizes = SizeDistribution{SizeLaw::lognormal, 2e-4, 1.5, 1e-5, 1e-3};
   scene.particles.push_back(entering);
   return scene;
 }
@@ -320,6 +322,7 @@ void expect_same(const SimulationCheckpoint& one, const SimulationCheckpoint& ot
   ASSERT_GT(a.rows(), 100U);
   for (std::size_t i = 0; i < a.rows(); ++i) {
     ASSERT_EQ(a[a.id][i], b[b.id][i]);
+    ASSERT_EQ(a[a.diameter][i], b[b.diameter][i]);
     ASSERT_EQ(std::memcmp(&a[a.velocity][i], &b[b.velocity][i], sizeof(Vec3)), 0) << i;
     ASSERT_EQ(std::memcmp(&a[a.state][i].position, &b[b.state][i].position, sizeof(Vec3)), 0) << i;
   }
@@ -356,6 +359,137 @@ void expect_same_on_all(const Scene& scene, int steps) {
 }
 
 TEST(RandomMotion, BitsAreThoseOfAnyThreadsRanksAndResume) { expect_same_on_all(shaken(), 40); }
+
+// As shaken(), with turbulence of k that falls along the box.
+Scene turbulent(bool by_forces) {
+  Scene scene = shaken();
+  auto& mesh = std::get<MeshData>(scene.environment.mesh);
+  DataArray k{"k", 1, {}};
+  for (const Vec3& p : mesh.points) k.values.push_back(0.3 - 0.1 * p.x);
+  mesh.point_data.push_back(k);
+  mesh.point_data.push_back({"omega", 1, std::vector<double>(mesh.points.size(), 40.0)});
+  scene.motion.sample = {"k", "omega"};
+  scene.motion.turbulence = {.k = "k", .epsilon = {}, .omega = "omega", .lagrangian = 0.15};
+  if (!by_forces) scene.motion.forces = {};
+  return scene;
+}
+
+TEST(Turbulence, BitsAreThoseOfAnyThreadsRanksAndResume) {
+  expect_same_on_all(turbulent(true), 40);
+  expect_same_on_all(turbulent(false), 40);
+}
+
+// Numbers of a particle: k, epsilon, and its eddy.
+struct OneParticle {
+  std::array<double, 6> numbers = {0.6, 0.3, 1.0, 0.0, 0.0, 0.0};
+  SimulationOptions options;
+  explicit OneParticle(double k = 0.6) {
+    numbers[0] = k;
+    options.user_data = {"k", "epsilon", "eddy_x", "eddy_y", "eddy_z", "eddy_left"};
+    options.turbulence = {.k = "k", .epsilon = "epsilon", .omega = {}, .lagrangian = 0.2};
+  }
+  Vec3 step(double duration, const Eddies::Crossing& crossing, std::uint64_t at = 5) {
+    const Eddies eddies(options, false);
+    return eddies.velocity(numbers, eddies.moment(at), 7, duration, crossing);
+  }
+};
+
+// The life is 2 C_L k / epsilon; the size is C_mu^(3/4) k^(3/2) / epsilon.
+TEST(Turbulence, AnEddyEndsWithItsLifeOrWhenItIsCrossed) {
+  const double life = 2.0 * 0.2 * 0.6 / 0.3;
+  const double size = std::pow(0.09, 0.75) * std::pow(0.6, 1.5) / 0.3;
+  struct Case {
+    Eddies::Crossing crossing;
+    double time;
+  };
+  for (const auto& [crossing, time] :
+       {Case{{}, life}, Case{{0.1, 0.5 * size / 0.1}, life},  // it never comes out of the eddy
+        Case{{10.0, 0.5}, -0.5 * std::log(1.0 - size / 5.0)}, Case{{1e-3, 1e9}, life},
+        Case{{5.0, 1e6}, -1e6 * std::log1p(-size / 5e6)}}) {
+    OneParticle p;
+    const Vec3 v = p.step(0.01, crossing);
+    EXPECT_NEAR(p.numbers[5], time - 0.01, 1e-9 * time);
+    const double steps = time / 0.01;
+    const double fraction = steps - std::floor(steps);
+    const double share = 1.0 - fraction * (1.0 - fraction) / (steps * steps + fraction * (1.0 - fraction));
+    const auto deviates = normal_deviates(RandomMoment{1, RandomPurpose::eddy, 5}.bits(7));
+    expect_near(v, Vec3{deviates[0], deviates[1], deviates[2]} * std::sqrt(0.4 * share), 1e-9);
+    EXPECT_EQ(p.step(0.01, crossing, 6), v);
+  }
+  OneParticle still(0.0);
+  EXPECT_EQ(still.step(0.01, {}), Vec3{});
+  EXPECT_EQ(still.numbers[2], 0.0);
+}
+
+// Steps longer than an eddy keep the dispersion of a long time; drops of little inertia follow.
+TEST(Turbulence, DispersesAlikeForAnyStep) {
+  constexpr std::size_t count = 3000;
+  const double life = 2.0 * 0.15 * 0.015 / 0.0225;
+  MeshData mesh = box_of(8.0, 1);
+  mesh.point_data.push_back({"u", 3, std::vector<double>(24)});
+  mesh.point_data.push_back({"k", 1, std::vector<double>(8, 0.015)});
+  mesh.point_data.push_back({"epsilon", 1, std::vector<double>(8, 0.0225)});
+  for (const bool by_forces : {false, true}) {
+    for (const double steps_per_life : {4.0, 1.3, 0.4}) {
+      Scene scene;
+      scene.environment.mesh = mesh;
+      scene.motion.field.array = "u";
+      scene.motion.sample = {"k", "epsilon"};
+      scene.motion.turbulence.k = "k";
+      scene.motion.turbulence.epsilon = "epsilon";
+      scene.motion.dt = life / steps_per_life;
+      if (by_forces) {
+        scene.motion.forces.terms = {Force::stokes};
+        scene.motion.forces.fluid = air;
+      }
+      ParticlesScene group;
+      InletParticles cone;
+      cone.cone = InletCone{.at = {4.1, 4.2, 4.3}};
+      cone.burst_times = {0.0};
+      cone.burst_count = count;
+      group.source = cone;
+      group.material = {1e-6, 1000.0, 0.0};
+      scene.particles = {group};
+      Simulation simulation(scene);
+      while (simulation.time() < 20.0 * life) simulation.step();
+      ASSERT_EQ(simulation.particles().size(), count);
+      double way = 0.0;
+      for (std::size_t i = 0; i < count; ++i) {
+        const Vec3 x = simulation.particles()[i].position - Vec3{4.1, 4.2, 4.3};
+        way += dot(x, x) / (3.0 * count);
+      }
+      const double truth = 0.01 * (life * simulation.time() - (steps_per_life > 1.0 ? life * life / 3.0 : 0.0));
+      EXPECT_NEAR(way, truth, (4.0 * std::sqrt(2.0 / (3.0 * count)) + 0.01) * truth)
+          << by_forces << " " << steps_per_life;
+    }
+  }
+}
+
+TEST(Turbulence, RefusesOptionsThatCannotBeMet) {
+  Environment environment(box_of(1.0));
+  const auto expect = [&](const SimulationOptions& o, const char* part) {
+    test::expect_refused([&] { Simulation simulation(environment, o); }, part);
+  };
+  SimulationOptions o = OneParticle().options;
+  o.turbulence.omega = "omega";
+  expect(o, "one of epsilon and omega");
+  o = OneParticle().options;
+  o.turbulence.k = "";
+  expect(o, "needs k");
+  o.turbulence.k = "tke";
+  expect(o, "\"tke\" of each particle");
+  o = OneParticle().options;
+  std::swap(o.user_data[2], o.user_data[5]);
+  expect(o, "in a row");
+  o = OneParticle().options;
+  o.turbulence.lagrangian = 0.0;
+  expect(o, "Lagrangian constant");
+  o = OneParticle().options;
+  o.collisions.emplace();
+  expect(o, "leave collisions or turbulence out");
+  Simulation without_field(environment, OneParticle().options);
+  test::expect_refused([&] { without_field.step(); }, "turbulence needs a velocity field");
+}
 
 TEST(RandomMotion, StaysInThePlane) {
   RectangleOptions rectangle;

@@ -63,6 +63,15 @@ Scene Plan::scene() const {
   if (case_[Knob::motion] != 0) s.deformation.push_back({deformation(), {}, {}, {}, 0.0});
   s.particles.push_back({RandomParticles{60}, velocity(), 0.0, user_data(), false, material()});
   if (has_inlet()) s.particles.push_back({InletParticles{door_, 40.0}, {}, 0.0, user_data(), false, material()});
+  if (has(25)) s.particles.back().sizes = SizeDistribution{SizeLaw::lognormal, 0.1 * scene_.edge, 1.5};
+  if (has(26) && has_field()) {
+    auto& points = std::get<MeshData>(s.environment.mesh);
+    points.point_data.push_back({"k", 1, std::vector<double>(points.points.size(), scene_.edge * scene_.edge)});
+    points.point_data.push_back({"omega", 1, std::vector<double>(points.points.size(), 30.0)});
+    s.motion.sample = {"k", "omega"};
+    s.motion.turbulence.k = "k";
+    s.motion.turbulence.omega = "omega";
+  }
   s.user_data = o.user_data;
   s.motion.dt = o.dt;
   s.motion.gravity = o.gravity;
@@ -104,6 +113,11 @@ void Plan::fill(Simulation& s, bool particles) const {
   if (space_ && has(6)) s.set_remeshing({.every = 2, .options = {}});
   if (space_ && has(7)) s.set_adaptive_subdivision({.every = 2, .options = {.max_particles = 6, .min_particles = 2}});
   if (particles) s.add_random(has(8) ? 60 : 12, velocity(), 0.0, user_data(), material());
+  if (particles && has(25)) {
+    ParticlesScene many{RandomParticles{6}, velocity(), 0.0, user_data(), false, material()};
+    many.sizes = SizeDistribution{SizeLaw::lognormal, 0.1 * scene_.edge, 1.5};
+    s.add(many);
+  }
   if (particles && has_spheres()) s.add_random(10, {}, 0.15 * scene_.edge, {}, material());
   if (space_ && has(9)) add_body(s);
   if (space_ && has(10)) add_solid(s);
