@@ -20,11 +20,22 @@ enum class WallResponseKind : std::uint8_t {
   escape    ///< leaves the scene through it
 };
 
+/// Restitution by how a particle meets a wall, bilinear between these speeds and angles. Beyond the ends it is as there.
+struct RestitutionTable {
+  std::vector<double> speeds;  ///< m / s, increasing, relative to the wall; empty: there is no table
+  std::vector<double> angles;  ///< degrees from the wall's plane, increasing, from 0 to 90
+  std::vector<double> values;  ///< in [0, 1]: for each speed one for each angle
+};
+
 /// A kind of response, with its parameters.
 struct WallResponse {
   WallResponseKind kind = WallResponseKind::reflect;
   double restitution = 1.0;  ///< share of the normal velocity kept by a reflection, in [0, 1]
   double friction = 0.0;     ///< Coulomb: tangential velocity lost per normal velocity changed, >= 0
+  /// >= 0: a particle sticks instead of rebounding if it meets the wall with a normal speed below this. So is the table:
+  /// for particles of a simulation without collisions, not for those of bodies.
+  double stick_below = 0.0;
+  RestitutionTable table = {};  ///< in place of `restitution`
 };
 
 // The responses as values, each with its own parameters: Reflect{0.5, 0.1}, Slide{}.
@@ -34,30 +45,30 @@ struct WallResponse {
 struct Reflect {
   double restitution = 1.0;  ///< as WallResponse::restitution
   double friction = 0.0;     ///< as WallResponse::friction
-  constexpr operator WallResponse() const { return {WallResponseKind::reflect, restitution, friction}; }
+  operator WallResponse() const { return {WallResponseKind::reflect, restitution, friction}; }
 };
 /// The particle goes on along the wall.
 struct Slide {
-  constexpr operator WallResponse() const { return {WallResponseKind::slide}; }
+  operator WallResponse() const { return {WallResponseKind::slide}; }
 };
 /// The particle stays on the wall from then on, and moves with it.
 struct Stick {
-  constexpr operator WallResponse() const { return {WallResponseKind::stick}; }
+  operator WallResponse() const { return {WallResponseKind::stick}; }
 };
 /// The particle ends at the wall.
 struct Absorb {
-  constexpr operator WallResponse() const { return {WallResponseKind::absorb}; }
+  operator WallResponse() const { return {WallResponseKind::absorb}; }
 };
 /// The particle leaves the scene through the wall.
 struct Escape {
-  constexpr operator WallResponse() const { return {WallResponseKind::escape}; }
+  operator WallResponse() const { return {WallResponseKind::escape}; }
 };
 // NOLINTEND(google-explicit-constructor)
 
 /// A response for every patch. Wall faces without a patch, and patches without a response, get the general one.
 class WallResponses {
  public:
-  /// Throws InvalidArgument if restitution or friction is out of range.
+  /// Throws InvalidArgument if a number is out of range.
   explicit WallResponses(const WallResponse& general = {});
   void set(Patch patch, const WallResponse& response);
   [[nodiscard]] const WallResponse& of(Patch patch) const {

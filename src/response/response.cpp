@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
+#include "base/elementary.hpp"
 #include "base/vec3_parts.hpp"
 #include "dartcast/error.hpp"
 #include "response/incident_walls.hpp"
@@ -19,6 +21,52 @@ void check(const WallResponse& r) {
     throw InvalidArgument("response: a restitution must be between 0 and 1");
   if (!(r.friction >= 0.0) || !std::isfinite(r.friction))
     throw InvalidArgument("response: a friction must be finite and not negative");
+  if (!(r.stick_below >= 0.0) || !std::isfinite(r.stick_below))
+    throw InvalidArgument("response: the speed to stick below must be finite and not negative");
+  const auto increases = [](const std::vector<double>& list, double from, double to) {
+    return !list.empty() && list.front() >= from && list.back() <= to &&
+           std::adjacent_find(list.begin(), list.end(), [](double a, double b) { return !(a < b); }) == list.end();
+  };
+  const RestitutionTable& t = r.table;
+  if (t.speeds.empty() && t.angles.empty() && t.values.empty()) return;
+  if (!increases(t.speeds, 0.0, std::numeric_limits<double>::max()))
+    throw InvalidArgument("response: the speeds of a restitution table must increase from 0 or above");
+  if (!increases(t.angles, 0.0, 90.0))
+    throw InvalidArgument("response: the angles of a restitution table must increase, from 0 to 90 degrees");
+  if (t.values.size() != t.speeds.size() * t.angles.size() ||
+      !std::all_of(t.values.begin(), t.values.end(), [](double e) { return e >= 0.0 && e <= 1.0; }))
+    throw InvalidArgument(
+        "response: a restitution table needs a value between 0 and 1 for each speed and angle, the angles of a speed "
+        "in a "
+        "row");
+}
+
+// Where a number stands in a list: between an entry and the next one, and how far.
+struct PlaceInList {
+  std::size_t entry, next;
+  double share;
+};
+PlaceInList place_in(const std::vector<double>& list, double x) {
+  const auto above = std::upper_bound(list.begin(), list.end(), x);
+  const std::size_t last = list.size() - 1;
+  if (above == list.begin()) return {0, 0, 0.0};
+  const auto entry = static_cast<std::size_t>(above - list.begin()) - 1;
+  if (entry == last) return {last, last, 0.0};
+  return {entry, entry + 1, (x - list[entry]) / (list[entry + 1] - list[entry])};
+}
+
+// `into`: the part of the speed that points into the wall.
+double restitution_at(const RestitutionTable& t, double speed, double into) {
+  const double along = std::sqrt(std::max(0.0, (speed - into) * (speed + into)));
+  const double degrees = polar_angle(std::max(0.0, into), along) * (180.0 / 3.14159265358979323846);
+  const PlaceInList s = place_in(t.speeds, speed);
+  const PlaceInList a = place_in(t.angles, degrees);
+  const auto between = [&](std::size_t row) {
+    const double* const e = &t.values[row * t.angles.size()];
+    return e[a.entry] + (e[a.next] - e[a.entry]) * a.share;
+  };
+  const double low = between(s.entry);
+  return std::clamp(low + (between(s.next) - low) * s.share, 0.0, 1.0);
 }
 
 const WallHit* max_opposed(const Vec3& v, std::span<const WallHit> walls) {
@@ -87,6 +135,13 @@ WallSurface surface(const WallResponse& response) {
   return {response.restitution, response.friction};
 }
 
+WallSurface tabulated_surface(const WallResponse& response, const Vec3& impact, const Vec3& normal) {
+  WallSurface s = surface(response);
+  if (response.kind != WallResponseKind::slide)
+    s.restitution = restitution_at(response.table, norm(impact), -dot(impact, normal));
+  return s;
+}
+
 // Whether a particle that a step has stopped at such a wall keeps a velocity of its own.
 bool keeps_velocity(WallResponseKind kind) {
   switch (kind) {
@@ -107,8 +162,13 @@ struct LibraryResponse {
   double dt;
   Acceleration acceleration;
 
-  [[nodiscard]] Vec3 rebound(const Vec3& v, const JointWalls& walls, const Vec3& lead) const {
-    const auto surface_of = [&](const WallHit& wall, double) { return surface(responses.of(wall.patch)); };
+  // `impact`: the velocity relative to the wall, before.
+  [[nodiscard]] Vec3 rebound(const Vec3& v, const JointWalls& walls, const Vec3& impact, const Vec3& lead) const {
+    const auto surface_of = [&](const WallHit& wall, double) {
+      const WallResponse& response = responses.of(wall.patch);
+      if (response.table.speeds.empty()) return surface(response);
+      return tabulated_surface(response, impact, wall.normal);
+    };
     return rebounded(v, walls, surface_of, lead);
   }
 
@@ -120,13 +180,14 @@ struct LibraryResponse {
     Vec3& velocity = velocities[contact.particle];
     const double time = contact.time_of_impact;
     const Vec3 lead = acceleration.value * (acceleration.duration * (time - 0.5));
-    const Vec3 relative = rebound(velocity - wall_velocity, met, lead);
+    const Vec3 impact = velocity - wall_velocity;
+    const Vec3 relative = rebound(impact, met, impact, lead);
     velocity = wall_velocity + relative;
     if (acceleration.value != Vec3{}) {
       const Vec3 way = relative * ((1.0 - time) * acceleration.duration);
       return {is_finite(way) ? way : Vec3{}, true};  // a step never throws for a velocity
     }
-    return {rebound(contact.unused, met, {}), true};
+    return {rebound(contact.unused, met, impact, {}), true};
   }
 
   AfterContact operator()(const Contact& contact, std::span<const WallHit> walls,
@@ -135,7 +196,10 @@ struct LibraryResponse {
     if (fate != ParticleStatus::alive) return {};
     const Vec3 wall_velocity = contact.wall_displacement * (1.0 / dt);
     Vec3& velocity = velocities[contact.particle];
-    switch (responses.of(walls.front().patch).kind) {
+    const WallResponse& response = responses.of(walls.front().patch);
+    const bool sticks = response.stick_below > 0.0 && response.kind == WallResponseKind::reflect &&
+                        dot(wall_velocity - velocity, walls.front().normal) < response.stick_below;
+    switch (sticks ? WallResponseKind::stick : response.kind) {
       case WallResponseKind::reflect: return reflect(contact, walls, earlier);
       case WallResponseKind::slide:
         velocity = wall_velocity + slid(velocity - wall_velocity, walls, earlier);

@@ -209,6 +209,21 @@ class SceneReader {
     return names;
   }
 
+  static RestitutionTable restitution_table(TomlTable t) {
+    RestitutionTable table;
+    t.require("speeds", "speeds of impact in m/s, increasing");
+    t.require("angles", "angles of impact in degrees from the wall, increasing");
+    t.require("values", "a restitution for each speed and angle: all angles of the first speed, then of the next");
+    t.get("speeds", table.speeds);
+    t.get("angles", table.angles);
+    t.get("values", table.values);
+    if (table.speeds.empty() || table.values.size() != table.speeds.size() * table.angles.size())
+      t.fail("values", fmt::format("there are {} values for {} speeds and {} angles", table.values.size(),
+                                   table.speeds.size(), table.angles.size()));
+    t.finish();
+    return table;
+  }
+
   static void response(TomlTable& t, WallResponse& r) {
     t.get("response", r.kind,
           {{"reflect", WallResponseKind::reflect},
@@ -216,8 +231,13 @@ class SceneReader {
            {"stick", WallResponseKind::stick},
            {"absorb", WallResponseKind::absorb},
            {"escape", WallResponseKind::escape}});
-    t.get("restitution", r.restitution, {0.0, 1.0});
+    if (t.is_table("restitution")) {
+      r.table = restitution_table(t.table("restitution"));
+    } else if (t.get("restitution", r.restitution, {0.0, 1.0})) {
+      r.table = {};
+    }
     t.get("friction", r.friction, Range::not_negative);
+    t.get("stick_below", r.stick_below, Range::not_negative);
   }
 
   static ContactScene contact(TomlTable t) {

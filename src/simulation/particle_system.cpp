@@ -86,6 +86,12 @@ void check(const SimulationOptions& o, bool planar) {
   check(o.step, "simulation");
   check_names(o.user_data);
   if (!o.collisions) return;
+  const auto is_plain = [](const WallResponse& r) { return r.stick_below == 0.0 && r.table.speeds.empty(); };
+  if (!is_plain(o.response) || !std::all_of(o.patch_responses.begin(), o.patch_responses.end(),
+                                            [&](const auto& patch) { return is_plain(patch.second); }))
+    throw InvalidArgument(
+        "simulation: spheres that collide know of one restitution for each wall: leave collisions out, or leave out "
+        "stick_below and tables of restitution");
   if (are_several(o.ranks))
     throw InvalidArgument(
         "simulation: spheres that collide need all others, and ranks have some each: run this scene with one process, "

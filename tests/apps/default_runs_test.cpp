@@ -379,6 +379,41 @@ magnetic_field = [0.0, 0.0, 1.0]
 at = 0.04
 kind = "open"
 patch = "membrane"
+)",
+                                               R"([environment]
+generator = "vessel"
+[fluid]
+density = 1000.0
+viscosity = 1e-3
+temperature = 300.0
+[[particles]]
+inlet = "inlet"
+mass_rate = 1e-9
+diameter = { law = "table", diameters = [1e-6, 4e-6], shares = [3.0, 1.0] }
+density = 1100.0
+[[particles]]
+count = 20
+diameter = { law = "normal", mean = 2e-6, deviation = 5e-7 }
+density = 1100.0
+[motion]
+dt = 1e-3
+steps = 6
+field = "velocity"
+forces = ["stokes", "brownian"]
+turbulence = { k = "path_length", epsilon = "path_length", lagrangian = 0.2 }
+)",
+                                               R"([environment]
+generator = "vessel"
+[[particles]]
+count = 20
+[motion]
+dt = 1e-3
+steps = 6
+field = "velocity"
+diffusion = 1e-9
+turbulence = { k = "path_length", omega = "path_length" }
+[contact]
+stick_below = 1e-3
 )"};
 
 class DefaultRuns : public test::CommandTest {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -365,6 +366,85 @@ TEST(RespondWith, WallsMetAtOnePlaceAnswerTogether) {
   EXPECT_EQ(report.contacts.contacts[1].together, 1U);
   EXPECT_NEAR(velocity[0].x, 0.0, 1e-3);
   EXPECT_NEAR(velocity[0].z, 0.005, 1e-4);
+}
+
+// A contact of a particle with a wall at rest or moving, half way through a step of 1 s.
+AfterContact meet(const WallResponse& response, const Vec3& normal, Vec3& velocity, ParticleStatus& status,
+                  const Vec3& wall_velocity = {}) {
+  Contact contact;
+  contact.time_of_impact = 0.5;
+  contact.wall_displacement = wall_velocity;
+  contact.unused = (velocity - wall_velocity) * 0.5;
+  const WallResponses responses(response);
+  const std::vector<WallHit> met = walls({normal});
+  return respond_with(responses, {&velocity, 1}, {&status, 1}, 1.0)(contact, met, {});
+}
+
+// Bilinear between speeds and angles, as at the ends beyond them; relative to the moving wall.
+TEST(RestitutionTables, GiveTheRestitutionOfSpeedAndAngle) {
+  WallResponse r = Reflect{};
+  r.table = {{1.0, 3.0, 10.0}, {20.0, 60.0}, {1.0, 0.8, 0.7, 0.5, 0.2, 0.1}};
+  const auto truth = [](double speed, double degrees) {
+    const double s = std::clamp(speed, 1.0, 10.0);
+    const double a = (std::clamp(degrees, 20.0, 60.0) - 20.0) / 40.0;
+    const auto row = [&](double low, double high) { return low + a * (high - low); };
+    if (s <= 3.0) return row(1.0, 0.8) + (s - 1.0) / 2.0 * (row(0.7, 0.5) - row(1.0, 0.8));
+    return row(0.7, 0.5) + (s - 3.0) / 7.0 * (row(0.2, 0.1) - row(0.7, 0.5));
+  };
+  const double turn = std::atan2(0.0, -1.0);
+  for (const double speed : {0.1, 1.0, 2.0, 3.0, 5.5, 10.0, 40.0}) {
+    for (const double degrees : {1.0, 20.0, 33.0, 60.0, 89.0}) {
+      for (const Vec3& moving : {Vec3{}, Vec3{0.3, -0.2, 0.7}}) {
+        const double angle = degrees * turn / 180.0;
+        const Vec3 along = Vec3{std::cos(angle), 0.0, -std::sin(angle)} * speed;
+        Vec3 v = along + moving;
+        ParticleStatus status = ParticleStatus::alive;
+        const AfterContact after = meet(r, {0, 0, 1}, v, status, moving);
+        const double e = truth(speed, degrees);
+        expect_near(v - moving, {along.x, 0.0, -e * along.z}, 1e-12 * speed);
+        expect_near(after.displacement, Vec3{along.x, 0.0, -e * along.z} * 0.5, 1e-12 * speed);
+      }
+    }
+  }
+}
+
+TEST(StickBelow, HoldsParticlesThatMeetTheWallSlowly) {
+  WallResponse r = Reflect{0.5};
+  r.stick_below = 1.0;
+  for (const double into : {0.5, 0.999, 1.0, 2.0}) {
+    Vec3 v = {3.0, 0.0, 0.25 - into};
+    ParticleStatus status = ParticleStatus::alive;
+    const AfterContact after = meet(r, {0, 0, 1}, v, status, {0.0, 0.0, 0.25});
+    const bool sticks = into < 1.0;
+    EXPECT_EQ(status, sticks ? ParticleStatus::stuck : ParticleStatus::alive) << into;
+    EXPECT_EQ(after.displacement == Vec3{}, sticks);
+    expect_near(v, sticks ? Vec3{0.0, 0.0, 0.25} : Vec3{3.0, 0.0, 0.25 + 0.5 * into});
+  }
+  r.kind = WallResponseKind::slide;
+  Vec3 v = {3.0, 0.0, -0.5};
+  ParticleStatus status = ParticleStatus::alive;
+  (void)meet(r, {0, 0, 1}, v, status);
+  EXPECT_EQ(status, ParticleStatus::alive);
+}
+
+TEST(RestitutionTables, RefuseWhatIsOutOfRange) {
+  const auto expect = [](const WallResponse& r, const char* part) {
+    test::expect_refused([&] { const WallResponses responses(r); }, part);
+  };
+  WallResponse r;
+  r.stick_below = -1.0;
+  expect(r, "the speed to stick below");
+  r = {};
+  r.table = {{1.0, 1.0}, {10.0}, {1.0, 1.0}};
+  expect(r, "speeds of a restitution table");
+  r.table = {{1.0}, {10.0, 91.0}, {1.0, 1.0}};
+  expect(r, "angles of a restitution table");
+  r.table = {{1.0}, {10.0, 90.0}, {1.0}};
+  expect(r, "a value between 0 and 1");
+  r.table = {{1.0}, {10.0, 90.0}, {1.0, 1.1}};
+  expect(r, "a value between 0 and 1");
+  r.table = {{}, {10.0}, {}};
+  expect(r, "speeds of a restitution table");
 }
 
 }  // namespace dartcast::respond_test

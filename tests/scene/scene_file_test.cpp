@@ -560,38 +560,4 @@ TEST(SceneFile, ScenesOfTheHowToPageAreRead) {
   }
 }
 
-TEST(SceneFile, ReadsForcesAndMaterials) {
-  const Scene scene = parse_scene(
-      box +
-          "[fluid]\ndensity = 1.2\nviscosity = 1.8e-5\nmean_free_path = 6.6e-8\n[[particles]]\ncount = 3\ndiameter = "
-          "1e-6\n"
-          "density = 900.0\ncharge_per_mass = -2.0\ninterception = true\n[motion]\nforces = ['putnam', 'lorentz']\n"
-          "electric_field = [1, 2, 3]\nmagnetic_field = [4, 5, 6]\n",
-      "scene.toml");
-  const ForceOptions& forces = scene.motion.forces;
-  EXPECT_EQ(forces.terms, (std::vector{Force::putnam, Force::lorentz}));
-  EXPECT_EQ(forces.fluid.density, 1.2);
-  EXPECT_EQ(forces.fluid.viscosity, 1.8e-5);
-  EXPECT_EQ(forces.fluid.mean_free_path, 6.6e-8);
-  EXPECT_EQ(forces.electric_field, (Vec3{1, 2, 3}));
-  EXPECT_EQ(forces.magnetic_field, (Vec3{4, 5, 6}));
-  const Simulation simulation(scene);
-  EXPECT_EQ(simulation.diameters()[2], 1e-6);
-  EXPECT_EQ(simulation.densities()[2], 900.0);
-  EXPECT_EQ(simulation.charges_per_mass()[2], -2.0);
-  EXPECT_EQ(simulation.radii()[2], 5e-7);
-}
-
-TEST(SceneFile, RefusesForcesThatDoNotFit) {
-  const std::string forces = box + "[motion]\nforces = ['stokes']\n";
-  expect_error(forces + "drag = 2.0\n", "5: [motion]", "leave drag out");
-  expect_error(box + "[motion]\nforces = ['stoke']\n", "4: [motion]", "\"stoke\" is unknown; there are stokes, ");
-  expect_error(box + "[fluid]\nviscosity = 0\n", "4: [fluid]", "more than 0");
-  expect_error(box + "[fluid]\ntemperature = 300\n", "4: [fluid]", "'temperature' is unknown");
-  expect_error(box + "[[particles]]\ncount = 1\nradius = 1.0\ndiameter = 2.0\ninterception = true\n",
-               "7: [[particles]]", "leave radius out");
-  EXPECT_THROW(Simulation(parse_scene(forces + "[fluid]\nviscosity = 1.0\n[[particles]]\ncount = 1\n", "a.toml")),
-               InvalidArgument);
-}
-
 }  // namespace dartcast::scene_file_test

@@ -152,7 +152,11 @@ WallResponse Plan::response() const {
   if (name == "stick") return Stick{};
   if (name == "absorb") return Absorb{};
   if (name == "stop") return Escape{};
-  return Reflect{0.7, 0.1};
+  WallResponse reflect = Reflect{0.7, 0.1};
+  if (collides()) return reflect;
+  if (has(23)) reflect.stick_below = 0.2 * scene_.edge;
+  if (has(24)) reflect.table = {{scene_.edge, 9.0 * scene_.edge}, {10.0, 80.0}, {1.0, 0.8, 0.9, 0.3}};
+  return reflect;
 }
 
 std::vector<Vec3> Plan::field() const {
