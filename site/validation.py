@@ -1,0 +1,126 @@
+#!/usr/bin/env python3
+"""Runs scenes/validation and draws the results beside their formulas: validation.py SCENES PICTURE.
+
+Dots are results of runs, lines are formulas. docs/validation.md says what each scene is, tests/scene/validation_test.cpp
+compares all particles.
+"""
+from __future__ import annotations
+
+import math
+import pathlib
+import sys
+import tempfile
+from typing import Any
+
+import matplotlib
+
+matplotlib.use("svg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+
+import dartcast as dc  # noqa: E402
+
+DOTS: dict[str, Any] = {"color": "#0072b2", "marker": "o", "markersize": 4, "linestyle": "none"}
+LINE: dict[str, Any] = {"color": "0.25", "linewidth": 1.2}
+AIR, MU, WATER, GRAVITY = 1.2, 1.8e-5, 1000.0, 9.81
+
+
+def run(name: str) -> Any:
+    """The frames of a scene."""
+    folder = pathlib.Path(tempfile.mkdtemp())
+    dc.run(SCENES / f"{name}.toml", folder)
+    return list(dc.read_run(folder))
+
+
+def by_id(frame: Any, name: str) -> Any:
+    values = frame.positions if name == "position" else frame.arrays[name]
+    return values[np.argsort(frame.arrays["id"])]
+
+
+def times(frames: Any) -> Any:
+    return np.array([frame.time for frame in frames])
+
+
+def formula(axis: Any, x: Any, y: Any) -> None:
+    axis.plot(x, y, **LINE)
+
+
+def putnam(d: float) -> float:
+    """The speed at which Putnam's drag balances gravity and buoyancy, by bisection."""
+    low, high = 0.0, 100.0
+    for _ in range(100):
+        v = 0.5 * (low + high)
+        re = AIR * v * d / MU
+        drag = (1 + re ** (2 / 3) / 6 if re <= 1000 else 0.424 * re / 24) * 18 * MU * v / (WATER * d * d)
+        low, high = (v, high) if drag < GRAVITY * (1 - AIR / WATER) else (low, v)
+    return low
+
+
+def terminal(axis: Any) -> None:
+    d = np.genfromtxt(SCENES / "terminal.csv", delimiter=",", names=True)["diameter"]
+    speed = -by_id(run("terminal")[-1], "velocity")[:, 2]
+    axis.loglog(1e6 * d, speed, **DOTS)
+    x = np.geomspace(d.min(), d.max(), 100)
+    formula(axis, 1e6 * x, [putnam(one) for one in x])
+    axis.set(title="terminal speed of drops", xlabel="diameter, um", ylabel="m/s")
+
+
+def stopping(axis: Any) -> None:
+    frames = run("stopping")
+    d = np.genfromtxt(SCENES / "stopping.csv", delimiter=",", names=True)["diameter"]
+    kn = 2 * 6.6e-8 / d
+    tau = WATER * d**2 / (18 * MU) * (1 + kn * (1.257 + 0.4 * np.exp(-1.1 / kn)))
+    t = np.linspace(0, times(frames)[-1], 200)
+    for i, one in enumerate(tau):
+        way = np.array([by_id(f, "position")[i, 0] for f in frames]) - 0.01
+        axis.plot(times(frames)[1:], 1e3 * way[1:], **DOTS)
+        formula(axis, t, 1e3 * 10 * one * (1 - np.exp(-t / one)))
+    axis.set(title="way of drops thrown at 10 m/s", xlabel="s", ylabel="mm", yscale="log")
+
+
+def diffusion(axis: Any) -> None:
+    frames = run("diffusion")[1:]
+    square = [((f.positions - [0.51, 0.52, 0.53]) ** 2).sum(axis=1).mean() for f in frames]
+    axis.plot(times(frames), square, **DOTS)
+    t = np.linspace(0, times(frames)[-1], 2)
+    formula(axis, t, 6 * 2e-3 * t)
+    axis.set(title="diffusion: mean square of the way", xlabel="s", ylabel="m$^2$")
+
+
+def brownian(axis: Any) -> None:
+    frames = run("brownian")[1:]
+    mass = 1000 * np.pi * 5e-8**3 / 6
+    tau, s2 = 1000 * 5e-8**2 / (18 * MU), 1.380649e-23 * 293.15 / mass
+    axis.plot(1e9 * times(frames), [(f.arrays["velocity"] ** 2).mean() / s2 for f in frames], **DOTS)
+    t = np.linspace(0, times(frames)[-1], 200)
+    formula(axis, 1e9 * t, 1 - np.exp(-2 * t / tau))
+    axis.set(title="Brownian: variance of the velocity", xlabel="ns", ylabel="of k T / m")
+
+
+def turbulence(axis: Any) -> None:
+    frames = run("turbulence")[1:]
+    axis.plot(times(frames), [((f.positions - [0.01, 0.02, 0.03]) ** 2).mean() for f in frames], **DOTS)
+    t, variance, life = np.linspace(0, times(frames)[-1], 200), 0.01, 0.2
+    formula(axis, t, variance * np.where(t < life, t**2 - t**3 / (3 * life), life * t - life**2 / 3))
+    axis.set(title="turbulence: variance of the place", xlabel="s", ylabel="m$^2$")
+
+
+def sizes(axis: Any) -> None:
+    d = 1e6 * by_id(run("sizes")[-1], "diameter")
+    x = np.linspace(1, 20, 400)
+    normal = np.vectorize(lambda u: 0.5 * (1 + math.erf(u / math.sqrt(2))))
+    lognormal = normal(np.log(x / 5) / np.log(1.8))
+    rosin = np.where(x < 10, 1 - np.exp(-((x / 5) ** 2.5)), 1 - np.exp(-(2**2.5)))
+    for drawn, law in ((d[:5000], lognormal), (d[5000:], rosin)):
+        formula(axis, x, (law - law[0]) / (law[-1] - law[0]))
+        axis.plot(np.quantile(drawn, np.linspace(0, 1, 21)), np.linspace(0, 1, 21), **DOTS)
+    axis.set(title="sizes of drops", xlabel="diameter, um", ylabel="share of smaller ones")
+
+
+SCENES = pathlib.Path(sys.argv[1])
+plt.rcParams.update({"svg.hashsalt": "dartcast", "svg.fonttype": "none", "font.size": 9, "axes.titlesize": 9.5})
+figure, axes = plt.subplots(2, 3, figsize=(10, 5.6), layout="constrained")
+for draw, axis in zip((terminal, stopping, diffusion, brownian, turbulence, sizes), axes.flat):
+    draw(axis)
+    axis.grid(color="0.92")
+figure.savefig(sys.argv[2], metadata={"Date": None, "Creator": None})
