@@ -9,10 +9,6 @@
 #include <utility>
 #include <vector>
 
-#if defined(__SSE2__)
-#include <emmintrin.h>
-#endif
-
 #include "dartcast/vec3.hpp"
 
 namespace dartcast {
@@ -87,8 +83,8 @@ class BoxTree {
   }
   static Lanes3 splat(const Vec3& v) { return {splat(v.x), splat(v.y), splat(v.z)}; }
   static unsigned lanes_set(const Mask& m) {
-#if defined(__SSE2__)
-    return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(m)));
+#if defined(__SSE__)
+    return static_cast<unsigned>(__builtin_ia32_movmskps(reinterpret_cast<Lanes>(m)));
 #else
     return static_cast<unsigned>((m[0] & 1) | (m[1] & 2) | (m[2] & 4) | (m[3] & 8));
 #endif

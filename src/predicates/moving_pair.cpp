@@ -90,31 +90,31 @@ void halve(const QuadraticCoefficients<Real>& f, QuadraticCoefficients<Real>& le
 }
 
 template <class Real>
-struct Vector {
+struct RealVector {
   Real x, y, z;
 };
 template <class Real>
-Vector<Real> operator+(const Vector<Real>& a, const Vector<Real>& b) {
+RealVector<Real> operator+(const RealVector<Real>& a, const RealVector<Real>& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
 template <class Real>
-Vector<Real> cross(const Vector<Real>& a, const Vector<Real>& b) {
+RealVector<Real> cross(const RealVector<Real>& a, const RealVector<Real>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 template <class Real>
-Real dot(const Vector<Real>& a, const Vector<Real>& b) {
+Real dot(const RealVector<Real>& a, const RealVector<Real>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
 // A difference of two points at both ends of the step.
 template <class Real>
 struct EndVectors {
-  Vector<Real> from, to;
+  RealVector<Real> from, to;
 };
 
 template <class Real>
 struct CrossForm {
-  Vector<Real> c0, c1, c2;  // of s^2, s t and t^2
+  RealVector<Real> c0, c1, c2;  // of s^2, s t and t^2
 };
 
 template <class Real>
@@ -129,8 +129,8 @@ using Differences = std::array<EndVectors<Real>, N>;
 template <class Real, std::size_t N>
 Differences<Real, N> differences(const MovingPair& q) {
   const auto less = [](const Vec3& a, const Vec3& b) {
-    return Vector<Real>{exact_difference<Real>(a.x, b.x), exact_difference<Real>(a.y, b.y),
-                        exact_difference<Real>(a.z, b.z)};
+    return RealVector<Real>{exact_difference<Real>(a.x, b.x), exact_difference<Real>(a.y, b.y),
+                            exact_difference<Real>(a.z, b.z)};
   };
   const auto between = [&](std::size_t i, std::size_t j) {
     return EndVectors<Real>{less(q.from[j], q.from[i]), less(q.to[j], q.to[i])};

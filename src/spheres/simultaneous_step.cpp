@@ -23,11 +23,11 @@ constexpr double rest_gap = 0x1p-20;
 // not proved free.
 constexpr std::array<double, 3> left_out = {0x1p-20, 0x1p-10, 0.5};
 
-using Corners3 = std::array<Vec3, 3>;
+using WallPlaces = std::array<Vec3, 3>;
 
-Corners3 corners_at(const CellComplex& complex, const std::array<Vertex, 3>& vertices, double time) {
+WallPlaces corners_at(const CellComplex& complex, const std::array<Vertex, 3>& vertices, double time) {
   const Between places = {complex.previous_positions().data(), complex.positions().data(), time};
-  Corners3 t = {places[vertices[0]], places[vertices[1]], places[vertices[2]]};
+  WallPlaces t = {places[vertices[0]], places[vertices[1]], places[vertices[2]]};
   if (complex.map().dimension() == 2) {
     for (Vec3& v : t) v.z = 0.0;
   }
@@ -35,7 +35,7 @@ Corners3 corners_at(const CellComplex& complex, const std::array<Vertex, 3>& ver
 }
 
 // Unit, to the free side; 0 where the wall has no area.
-Vec3 normal_of(const Corners3& t, unsigned dimension) {
+Vec3 normal_of(const WallPlaces& t, unsigned dimension) {
   const Vec3 e = t[1] - t[0];
   const Vec3 n = dimension == 2 ? Vec3{-e.y, e.x, 0.0} : cross(t[2] - t[0], e);
   const double length = norm(n);
@@ -231,8 +231,8 @@ bool SimultaneousStep::walk(Run& run, const Vec3& target) const {
 
 // The displacement of a wall's point in the whole step: of the one nearest to x at a time.
 Vec3 SimultaneousStep::wall_displacement(const NearWall& wall, const Vec3& x, double time) const {
-  const Corners3 before = corners_at(complex_, wall.vertex, 0.0);
-  const Corners3 after = corners_at(complex_, wall.vertex, 1.0);
+  const WallPlaces before = corners_at(complex_, wall.vertex, 0.0);
+  const WallPlaces after = corners_at(complex_, wall.vertex, 1.0);
   const auto nearest = nearest_on_triangle(corners_at(complex_, wall.vertex, time), x);
   Vec3 displacement;
   for (std::size_t k = 0; k < 3; ++k) displacement += (after[k] - before[k]) * nearest.weights[k];
@@ -384,7 +384,7 @@ Vec3 SimultaneousStep::aim(const Run& run, const Contact& contact, const AfterCo
   if (!next.along || !in_exact_range(q)) return q;
   const double slack = along_share * std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
   for (const auto& m : run.memory.met) {
-    const Corners3 t = corners_at(complex_, m.wall.vertex, 1.0);
+    const WallPlaces t = corners_at(complex_, m.wall.vertex, 1.0);
     const Vec3 normal = normal_of(t, complex_.map().dimension());
     if (!(dot(d, normal) >= -slack)) continue;
     const double side = std::max({norm(t[1] - t[0]), norm(t[2] - t[1]), norm(t[0] - t[2])});

@@ -112,21 +112,18 @@ TEST(Reach, WallsWhoseBoxesMeetAWay) {
   }
 }
 
-// The filter in vectors proves nothing that is not so, keeps the order, and is the same with each instruction set.
-TEST(Reach, PairsThatAreProvedApart) {
-  Random random(9);
-  std::size_t kept = 0, all = 0, apart = 0;
-  for (int k = 0; k < test::scaled(3000, 60000); ++k) {
+// Points, vertices and pairs of them: anywhere, on a lattice, or points on the first triangle, but for rounding.
+struct Pairs {
+  std::vector<Vec3> before, after, targets;
+  std::vector<ParticleState> states;
+  std::vector<WayAndWall> pairs;
+
+  Pairs(Random& random, int k) {
     const double unit = std::array{1.0, 0x1p-20, 0x1p200, 0x1p-290, 0x1p-302}[static_cast<std::size_t>(k) % 5];
-    const bool lattice = k % 3 == 0;
     const auto place = [&] {
-      Vec3 x = random_vector(random, 2.0);
-      if (lattice) x = {std::floor(x.x), std::floor(x.y), std::floor(x.z)};
-      return x * unit;
+      const Vec3 x = random_vector(random, 2.0);
+      return (k % 3 == 0 ? Vec3{std::floor(x.x), std::floor(x.y), std::floor(x.z)} : x) * unit;
     };
-    std::vector<Vec3> before, after, targets;
-    std::vector<ParticleState> states;
-    std::vector<WayAndWall> pairs;
     for (std::uint32_t i = 0; i < 9; ++i) {
       before.push_back(place());
       after.push_back(before.back() + place() * 0.25);
@@ -135,7 +132,7 @@ TEST(Reach, PairsThatAreProvedApart) {
     }
     if (k % 50 == 1) after[3].x = std::numeric_limits<double>::infinity();
     if (k % 50 == 2) after[4].y = std::nan("");
-    const auto on_wall = [&](const std::vector<Vec3>& x) {  // but for rounding
+    const auto on_wall = [&](const std::vector<Vec3>& x) {
       return flushed(x[0] * 0.3125 + x[1] * 0.25 + x[2] * 0.4375 + random_vector(random, 0x1p-52 * unit));
     };
     for (std::uint32_t i = 0; k % 4 == 1 && i < 3; ++i) {
@@ -144,34 +141,46 @@ TEST(Reach, PairsThatAreProvedApart) {
       pairs.push_back({i, {0, 1, 2}});
     }
     const auto any = [&] { return static_cast<std::uint32_t>(random.uniform(0.0, 9.0)); };
-    const auto count = static_cast<std::size_t>(k % 14);
-    for (std::size_t i = 0; i < count; ++i) pairs.push_back({any(), {any(), any(), any()}});
-    std::vector<WayAndWall> rest = pairs, portable = pairs;
-    rest.resize(detail::keep_undecided(rest, states.data(), targets.data(), before.data(), after.data()));
-    portable.resize(detail::keep_undecided(portable, states.data(), targets.data(), before.data(), after.data(),
-                                           detail::InstructionSet::portable));
+    for (int i = 0; i < k % 14; ++i) pairs.push_back({any(), {any(), any(), any()}});
+  }
+  [[nodiscard]] std::vector<WayAndWall> undecided(detail::InstructionSet set) const {
+    std::vector<WayAndWall> rest = pairs;
+    rest.resize(detail::keep_undecided(rest, states.data(), targets.data(), before.data(), after.data(), set));
+    return rest;
+  }
+  [[nodiscard]] bool touch(const WayAndWall& p) const {
+    detail::MovingPair pair{{states[p.way].position}, {targets[p.way]}};
+    for (std::size_t i = 0; i < 3; ++i) {
+      pair.from[i + 1] = flushed(before[p.corners[i]]);
+      pair.to[i + 1] = flushed(after[p.corners[i]]);
+    }
+    return detail::exact_touch(pair, detail::PairKind::vertex_face).has_value();
+  }
+};
+
+// The filter in vectors proves nothing that is not so, keeps the order, and is the same with each instruction set.
+TEST(Reach, PairsThatAreProvedApart) {
+  Random random(9);
+  std::size_t kept = 0;
+  std::size_t all = 0;
+  for (int k = 0; k < test::scaled(3000, 60000); ++k) {
+    const Pairs some(random, k);
+    const std::vector<WayAndWall> rest = some.undecided(detail::best_instruction_set());
+    const std::vector<WayAndWall> portable = some.undecided(detail::InstructionSet::portable);
     const auto same = [](const WayAndWall& a, const WayAndWall& b) { return a.way == b.way && a.corners == b.corners; };
     ASSERT_TRUE(std::equal(rest.begin(), rest.end(), portable.begin(), portable.end(), same)) << k;
     std::size_t next = 0;
-    for (const WayAndWall& p : pairs) {
-      if (next < rest.size() && same(p, rest[next])) {
+    for (const WayAndWall& p : some.pairs) {
+      if (next < rest.size() && same(p, rest[next]))
         ++next;
-        continue;
-      }
-      detail::MovingPair pair{{states[p.way].position}, {targets[p.way]}};
-      for (std::size_t i = 0; i < 3; ++i) {
-        pair.from[i + 1] = flushed(before[p.corners[i]]);
-        pair.to[i + 1] = flushed(after[p.corners[i]]);
-      }
-      ASSERT_FALSE(detail::exact_touch(pair, detail::PairKind::vertex_face)) << k;
-      ++apart;
+      else
+        ASSERT_FALSE(some.touch(p)) << k;
     }
     ASSERT_EQ(next, rest.size()) << k;
     kept += rest.size();
-    all += pairs.size();
+    all += some.pairs.size();
   }
-  EXPECT_EQ(kept + apart, all);
-  EXPECT_GT(apart, all / 5);
+  EXPECT_LT(kept, all - all / 5);
   EXPECT_GT(kept, all / 10);
 }
 
