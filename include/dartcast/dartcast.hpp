@@ -6,6 +6,7 @@
 #include "dartcast/catheter.hpp"
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/cell_shape.hpp"
+#include "dartcast/cell_tally.hpp"
 #include "dartcast/combinatorial_map.hpp"
 #include "dartcast/complex_edit.hpp"
 #include "dartcast/contact.hpp"

@@ -26,6 +26,7 @@ class StepDecider;
 }
 
 class CellComplex;         // dartcast/cell_complex.hpp
+class CellTally;           // dartcast/cell_tally.hpp
 class CombinatorialMap;    // dartcast/combinatorial_map.hpp
 class ComplexEdit;         // dartcast/complex_edit.hpp
 struct ComplexEditReport;  // dartcast/complex_edit.hpp
@@ -112,6 +113,7 @@ struct RayHit {
 /// The cells that rays pass, from the one that holds the origin to the one at the wall, or where the ray ends.
 struct RayCells {
   std::vector<Cell> cells;         ///< of all rays, one after another
+  std::vector<double> lengths;     ///< of the way in each, rounded
   std::vector<std::size_t> first;  ///< of each ray, and at the end the number of cells
 };
 
@@ -284,6 +286,12 @@ class Environment {
   /// The step that a particle would take to a target, as a replay. Throws as trace().
   [[nodiscard]] StepReplay record(const Particles& particles, std::size_t particle, const Vec3& target,
                                   const ContactCallback& respond = {}, const StepOptions& options = {}) const;
+
+  /// Adds all later steps by advance() to a tally of complex(); null ends this. It must outlive its use, and follow each
+  /// edit. advance_in_rounds() with a response refuses to step then. States and reports stay the same bits. If a response
+  /// throws, the tally is as before. Cost: docs/benchmark.md; and where a response may throw, a copy of the tally each step.
+  void set_tally(CellTally* tally);
+  [[nodiscard]] CellTally* tally() const;
 
   /// Checks every simplex of the scene; exact, parallel, streaming.
   [[nodiscard]] Validity validity(std::size_t max_count = 10) const;

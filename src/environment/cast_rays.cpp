@@ -13,8 +13,8 @@
 #include "environment/particle_details.hpp"
 #include "tracking/batch/batch_stepper.hpp"
 #include "tracking/checked_point.hpp"
+#include "tracking/passed_facets.hpp"
 #include "tracking/place_in_simplex.hpp"
-#include "tracking/walk.hpp"
 
 namespace dartcast {
 
@@ -52,21 +52,21 @@ void check_rays(std::size_t origins, std::size_t directions, double max_distance
     throw InvalidArgument(fmt::format("cast_rays: the distance is {}: it must not be negative", max_distance));
 }
 
-// The cells of a walk to its first wall, or to its end.
+// The cells of a walk to its first wall, or to its end, and the lengths in them.
 template <std::size_t N>
-void list_cells(const CellComplex& complex, SimplexId start, const Vec3& p, const Vec3& q, std::vector<Cell>& cells) {
-  const Space<Stored, N> space = current_space<N>(complex);
-  const std::size_t first = cells.size();
-  const auto list = [&](SimplexId id, unsigned) {
-    if (cells.size() == first || cells.back() != id.cell) cells.push_back(id.cell);
-  };
-  TestCounts counts;
-  const Walk to_wall = detail::walk_to_wall(space, start, p, q, counts, list);
-  const bool on_wall = to_wall.end == WalkEnd::wall &&
-                       orient_facet(space.corners(to_wall.wall_simplex), to_wall.wall_facet, p) == Sign::zero;
-  if (on_wall) cells.resize(first);  // the walk begins again, in another simplex that holds p
-  const Walk walk = detail::end_walk(space, to_wall, p, q, counts, list);
-  list(walk.simplex, 0);
+void list_cells(const CellComplex& complex, SimplexId start, const Vec3& p, const Vec3& q,
+                std::vector<detail::PassedFacet>& passed, RayCells& list) {
+  const std::size_t first = list.cells.size();
+  const double length = norm(q - p);
+  double so_far = 0.0;
+  detail::walk_cells(current_space<N>(complex), start, p, q, passed, [&](Cell cell, double fraction) {
+    if (list.cells.size() == first || list.cells.back() != cell) {
+      list.cells.push_back(cell);
+      list.lengths.push_back(0.0);
+    }
+    list.lengths.back() += (fraction - so_far) * length;
+    so_far = fraction;
+  });
 }
 
 // In chunks, which are joined in the order of the rays.
@@ -76,19 +76,21 @@ RayCells cells_passed(const CellComplex& complex, std::span<const Location> at, 
   std::vector<RayCells> chunks(chunk_count(rays, rays_at_once));
   parallel_for(rays, rays_at_once, threads, [&](std::size_t begin, std::size_t end) {
     RayCells& chunk = chunks[begin / rays_at_once];
+    std::vector<detail::PassedFacet> passed;
     for (std::size_t i = begin; i < end; ++i) {
       chunk.first.push_back(chunk.cells.size());
       if (at[i].place != Place::free) continue;
       if (complex.map().dimension() == 2)
-        list_cells<3>(complex, at[i].simplex, flushed(origins[i]), ends[i], chunk.cells);
+        list_cells<3>(complex, at[i].simplex, flushed(origins[i]), ends[i], passed, chunk);
       else
-        list_cells<4>(complex, at[i].simplex, flushed(origins[i]), ends[i], chunk.cells);
+        list_cells<4>(complex, at[i].simplex, flushed(origins[i]), ends[i], passed, chunk);
     }
   });
   RayCells all;
   for (const RayCells& chunk : chunks) {
     for (const std::size_t first : chunk.first) all.first.push_back(all.cells.size() + first);
     all.cells.insert(all.cells.end(), chunk.cells.begin(), chunk.cells.end());
+    all.lengths.insert(all.lengths.end(), chunk.lengths.begin(), chunk.lengths.end());
   }
   all.first.push_back(all.cells.size());
   return all;

@@ -326,7 +326,7 @@ StepReport Environment::advance_by(const MakeDecider& make, Particles& particles
     const std::unique_ptr<detail::StepDecider> decider = make ? make(answer) : nullptr;
     return members_->advance(particles, targets,
                              detail::BatchStepper(complex(), awaits_advance(particles), threads(), options, answer,
-                                                  may_throw, decider.get()));
+                                                  may_throw, decider.get(), members_->tally));
   };
   return members_->watched(*this, particles, targets, options, respond, take, static_cast<bool>(make));
 }
@@ -335,6 +335,8 @@ StepReport Environment::advance_in_rounds(Particles& particles, std::span<const 
                                           const RoundCallback& respond, const StepOptions& options) {
   check_advance(particles, options, "advance_in_rounds");
   if (!respond) return advance(particles, targets, {}, options);
+  if (members_->tally != nullptr)
+    throw InvalidArgument("advance_in_rounds: steps in rounds are not added to tallies: use advance()");
   const auto take = [&](const RoundCallback& answer) {
     return members_->advance(particles, targets,
                              detail::BatchStepper(complex(), awaits_advance(particles), threads(), options, answer));
@@ -344,6 +346,9 @@ StepReport Environment::advance_in_rounds(Particles& particles, std::span<const 
 
 void Environment::set_replay_hook(ReplayHook hook) { members_->replay_hook = std::move(hook); }
 const ReplayHook& Environment::replay_hook() const { return members_->replay_hook; }
+
+void Environment::set_tally(CellTally* tally) { members_->tally = tally; }
+CellTally* Environment::tally() const { return members_->tally; }
 
 // Repairs would turn the corners of cells that look inside out.
 std::unique_ptr<Environment> environment_as_it_is(const MeshData& mesh) {

@@ -50,6 +50,7 @@ struct Environment::Members {
   std::uint64_t moves_at_edit = 0;  ///< when the last edit was made
   ComplexEditReport last_edit;
   ReplayHook replay_hook;
+  CellTally* tally = nullptr;
   std::unique_ptr<Locator> locator;  ///< of the current positions, made by the first locate()
 };
 

@@ -5,10 +5,12 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
+#include "dartcast/cell_tally.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/spheres.hpp"
 #include "spheres/sphere_run.hpp"
 #include "tracking/representable_point.hpp"
+#include "tracking/tally_writer.hpp"
 
 namespace dartcast {
 
@@ -299,6 +301,49 @@ class SphereCall {
 
 }  // namespace
 
+namespace {
+
+// The steps of spheres are not added to a tally walk by walk: each counts as a straight way (dartcast/cell_tally.hpp).
+class StraightTally {
+ public:
+  StraightTally(Environment& environment, const Particles& particles, const StepOptions& options)
+      : environment_(environment), tally_(environment.tally()), options_(options) {
+    if (tally_ == nullptr) return;
+    before_ = particles;
+    moved_ = environment.awaits_advance(particles);
+    environment.set_tally(nullptr);
+  }
+  StraightTally(const StraightTally&) = delete;
+  StraightTally& operator=(const StraightTally&) = delete;
+  ~StraightTally() {
+    if (tally_ != nullptr) environment_.set_tally(tally_);
+  }
+
+  void add(const Particles& after, const ContactList& list) const {
+    if (tally_ == nullptr) return;
+    const ContactCallback none;
+    const Stepper stepper(environment_.complex(), moved_, options_, none);
+    detail::TallyWriter writer(*tally_);
+    const std::vector<Contact>& contacts = list.contacts;
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < after.size(); ++i) {
+      while (next < contacts.size() && contacts[next].particle < i) ++next;
+      const bool met = next < contacts.size() && contacts[next].particle == i;
+      stepper.tally_straight(before_[i], before_.held_weights(i), after[i], met ? contacts[next].time_of_impact : 1.0,
+                             writer);
+    }
+  }
+
+ private:
+  Environment& environment_;
+  CellTally* tally_;
+  const StepOptions& options_;
+  Particles before_;
+  bool moved_ = false;
+};
+
+}  // namespace
+
 SphereStepper::SphereStepper() = default;
 SphereStepper::~SphereStepper() = default;
 SphereStepper::SphereStepper(SphereStepper&&) noexcept = default;
@@ -313,10 +358,16 @@ SphereReport SphereStepper::advance(Environment& environment, Particles& particl
   if (points_only) return {environment.advance(particles, targets, respond, options), {}};
   if (!buffers_) buffers_ = std::make_unique<Buffers>();
   SphereCall call(*buffers_, environment, particles, radii, targets, respond, options, clearances);
-  if (!respond) return call.run();
+  const StraightTally tally(environment, particles, options);
+  const auto run = [&] {
+    SphereReport report = call.run();
+    tally.add(particles, report.step.contacts);
+    return report;
+  };
+  if (!respond) return run();
   const Particles before = particles;  // a response is the caller's code: it may throw
   try {
-    return call.run();
+    return run();
   } catch (...) {
     particles = before;
     throw;

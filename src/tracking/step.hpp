@@ -9,6 +9,10 @@
 
 namespace dartcast {
 
+namespace detail {
+class TallyWriter;  // tracking/tally_writer.hpp
+}
+
 /// The particle that a step moves, and the lists and sums that the step adds to.
 struct SteppedParticle {
   ParticleState& state;
@@ -56,6 +60,16 @@ class Stepper {
   /// step() to the same bits, which also records its crossings. Cost: some exact values for each crossing.
   StepResult trace(std::uint32_t particle, ParticleState& state, Weights& weights, const Vec3& target,
                    ContactList& contacts, std::vector<Crossing>& crossings) const;
+
+  // These add a step to a tally. The writer takes it from its start to its end.
+  /// run(), from any stage but `contact`.
+  void run_tallied(StepState& step, const SteppedParticle& particle, detail::TallyWriter& writer) const;
+  /// A step that something else has taken to its target, without a contact.
+  void tally_arrived(const ParticleState& before, const ParticleState& after, detail::TallyWriter& writer) const;
+  /// A step that has no walk: a straight way from where the mesh carries the particle, up to the fraction `end` of the step
+  /// (dartcast/cell_tally.hpp). `held`: its weights before the step, if it was held.
+  void tally_straight(const ParticleState& before, const Weights& held, const ParticleState& after, double end,
+                      detail::TallyWriter& writer) const;
 
  private:
   // run() if nothing responds, and the step's end is known.

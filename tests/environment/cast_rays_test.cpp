@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/random.hpp"
 #include "dartcast/cell_complex.hpp"
@@ -87,6 +88,32 @@ std::string check_cells(const CombinatorialMap& map, std::span<const Cell> cells
   return "";
 }
 
+// The lengths of a ray in cells, against the exact parts of the segment in all simplices. A part along a facet is one
+// cell's: of those that it is in.
+std::string check_lengths(const CheckedScene& scene, std::span<const Cell> cells, std::span<const double> lengths,
+                          const Vec3& p, const Vec3& q, double end) {
+  std::map<Cell, std::pair<double, double>> truth;  // the least and the most
+  for (const std::uint32_t s : scene.free_simplices()) {
+    const auto [first, last, inside] = scene.oracle().passed(s, p, q);
+    const double part = std::max(std::min(last, end) - std::min(first, end), 0.0);
+    auto& [least, most] = truth[scene.library_simplex(s).cell];
+    least += inside ? part : 0.0;
+    most += part;
+  }
+  std::map<Cell, double> found;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    found[cells[i]] += lengths[i] / norm(q - p);
+    sum += lengths[i] / norm(q - p);
+  }
+  if (std::abs(sum - end) > 1e-9) return "has lengths that do not add up to its own";
+  for (const auto& [cell, range] : truth) {
+    if (found[cell] < range.first - 1e-9) return "has too short a length in a cell";
+    if (found[cell] > range.second + 1e-9) return "has too long a length in a cell";
+  }
+  return "";
+}
+
 std::string check_scene(MeshData mesh, std::uint64_t seed, bool lattice, std::atomic<int>& hits) {
   const CheckedScene scene(mesh);
   if (!scene.valid()) return "";
@@ -102,6 +129,9 @@ std::string check_scene(MeshData mesh, std::uint64_t seed, bool lattice, std::at
       std::string wrong = check_ray(scene, all[i], rays.origins[i], q);
       const std::span<const Cell> cells(passed.cells.data() + passed.first[i], passed.first[i + 1] - passed.first[i]);
       if (wrong.empty()) wrong = check_cells(environment.map(), cells, all[i]);
+      const double end = all[i].hit ? all[i].distance / norm(q - rays.origins[i]) : 1.0;
+      const auto lengths = std::span(passed.lengths).subspan(passed.first[i], cells.size());
+      if (wrong.empty()) wrong = check_lengths(scene, cells, lengths, rays.origins[i], q, end);
       if (!wrong.empty()) return fmt::format("seed {}, ray {} of {}: {}", seed, i, most, wrong);
       hits += all[i].hit ? 1 : 0;
     }
@@ -173,6 +203,7 @@ TEST(CastRays, AreTheSameForAnyNumberOfThreads) {
   environment.set_threads(Threads{4});
   const std::vector<RayHit> by_four = environment.cast_rays(origins, directions, inf, &four);
   EXPECT_EQ(one.cells, four.cells);
+  EXPECT_EQ(one.lengths, four.lengths);
   EXPECT_EQ(one.first, four.first);
   for (std::size_t i = 0; i < by_one.size(); ++i) {
     EXPECT_EQ(by_one[i].face, by_four[i].face);

@@ -16,6 +16,7 @@
 
 #include "base/bytes.hpp"
 #include "base/random.hpp"
+#include "dartcast/cell_tally.hpp"
 #include "dartcast/complex_edit.hpp"
 #include "dartcast/cutting.hpp"
 #include "dartcast/environment.hpp"
@@ -228,6 +229,8 @@ int main(int argc, char** argv) {
       environment.add(set, s.simplex, s.position);
     }
   }
+  CellTally tally(environment.complex());
+  if (std::strstr(kind, "tally") != nullptr) environment.set_tally(&tally);
   const bool far = std::strncmp(kind, "long", 4) == 0;
   const double cells = far ? (moving ? 200.0 : 3.0) : 0.1;  // a step
   std::vector<Vec3> velocities = random_velocities(random, cells, lattice, plane);

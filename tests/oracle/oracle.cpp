@@ -153,6 +153,25 @@ std::vector<std::uint32_t> Oracle::all_containing(const Vec3& q, bool free_only)
   return found;
 }
 
+Oracle::Passed Oracle::passed(std::uint32_t simplex, const Vec3& p, const Vec3& q) const {
+  const Simplex& s = triangulation_.simplices()[simplex];
+  Clip clip;
+  bool inside = true;
+  for (std::size_t i = 0; i < 4; ++i) {
+    std::array<Vec3, 4> corner{};
+    for (std::size_t k = 0; k < 4; ++k) corner[k] = points_[s.vertex[k]];
+    const auto at = [&](const Vec3& x) {
+      corner[i] = x;
+      return determinant(corner[0], corner[1], corner[2], corner[3]);
+    };
+    const Linear side{at(p), at(q)};
+    inside = inside && (CGAL::sign(side.at_p) != 0 || CGAL::sign(side.at_q) != 0);
+    clip.keep_non_negative(side);
+  }
+  if (clip.empty()) return {};
+  return {clip.first().rounded(), clip.last().rounded(), inside};
+}
+
 int Oracle::dimension_at(std::uint32_t simplex, const Vec3& q) const {
   const Simplex& s = triangulation_.simplices()[simplex];
   std::vector<std::uint32_t> around;

@@ -59,6 +59,15 @@ class Oracle {
   /// cell.
   [[nodiscard]] int dimension_at(std::uint32_t simplex, const Vec3& q) const;
 
+  /// Where the segment from p to q is in the closed simplex: from and to which fraction of it, rounded once each; the same
+  /// twice where it is not. `inside`: it does not lie in one of the facets.
+  struct Passed {
+    double first = 0.0;
+    double last = 0.0;
+    bool inside = false;
+  };
+  [[nodiscard]] Passed passed(std::uint32_t simplex, const Vec3& p, const Vec3& q) const;
+
   /// Wall triangles that contain q.
   [[nodiscard]] std::vector<std::uint32_t> walls_at(const Vec3& q) const;
 

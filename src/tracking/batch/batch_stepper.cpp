@@ -7,11 +7,14 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "base/parallel.hpp"
 #include "dartcast/error.hpp"
 #include "tracking/batch/batch_plane.hpp"
+#include "tracking/batch/chunk_tally.hpp"
 #include "tracking/checked_point.hpp"
 
 namespace dartcast::detail {
@@ -19,6 +22,8 @@ namespace dartcast::detail {
 namespace {
 
 constexpr std::size_t chunk = max_batch;
+
+struct NoTally {};
 
 // The next step, from i on, that the batch has not completed. Most are complete: four are looked at together.
 std::size_t next_deferred(std::span<const StepStatus> status, std::size_t i) {
@@ -109,6 +114,7 @@ void BatchStepper::take(StepTaker taker, StepState& step, const SteppedParticle&
                                particle.counters);
 }
 
+template <bool tallied>
 void BatchStepper::step_chunk(const BatchScene& scene, const BatchParticles& particles, std::span<const Vec3> targets,
                               std::size_t begin, std::size_t end, ChunkSteps& steps) const {
   StepReport& report = steps.report;
@@ -132,6 +138,8 @@ void BatchStepper::step_chunk(const BatchScene& scene, const BatchParticles& par
                          decider_ != nullptr ? std::span<const Vec3>(batch_targets) : targets,
                          std::span(status).first(size),
                          partial};
+  std::conditional_t<tallied, ChunkTally, NoTally> tally;
+  if constexpr (tallied) tally.begin(*tally_, states, particles.weights.subspan(begin, size));
   if (complex_.map().dimension() == 2)
     step_plane(scene, batch, report.counters);
   else
@@ -145,12 +153,15 @@ void BatchStepper::step_chunk(const BatchScene& scene, const BatchParticles& par
     const SteppedParticle particle{states[i], particles.weights[begin + i], report.contacts, report.counters};
     if (decider_ != nullptr)
       take(takers[i], step, particle);
+    else if constexpr (tallied)
+      stepper_.run_tallied(step, particle, tally.writer());
     else if (rounds_ != nullptr)
       stepper_.run_to_contact(step, particle);
     else
       stepper_.run(step, particle);
     add(particles, step, steps);
   }
+  if constexpr (tallied) tally.add(stepper_, batch, moved_, decider_ != nullptr, report.contacts.contacts, begin);
 }
 
 // Also makes the cache that of the step.
@@ -166,10 +177,14 @@ BatchScene BatchStepper::scene_of(ParticleCache& cache, std::size_t count) const
 
 StepReport BatchStepper::step_all(const BatchParticles& particles, std::span<const Vec3> targets) const {
   BatchScene scene = scene_of(particles.cache, targets.size());
-  scene.stops = !stepper_.responds() && rounds_ == nullptr && decider_ == nullptr;
+  scene.stops = !stepper_.responds() && rounds_ == nullptr && decider_ == nullptr && tally_ == nullptr;
   std::vector<ChunkSteps> chunks(chunk_count(targets.size(), chunk));
   parallel_for(targets.size(), chunk, threads_, [&](std::size_t begin, std::size_t end) {
-    step_chunk(scene, particles, targets, begin, end, chunks[begin / chunk]);
+    ChunkSteps& steps = chunks[begin / chunk];
+    if (tally_ != nullptr)
+      step_chunk<true>(scene, particles, targets, begin, end, steps);
+    else
+      step_chunk<false>(scene, particles, targets, begin, end, steps);
   });
   ChunkSteps steps = joined(std::move(chunks));
   return rounds_ != nullptr ? answer_in_rounds(particles, std::move(steps)) : std::move(steps.report);
@@ -186,12 +201,14 @@ StepReport BatchStepper::advance(const BatchParticles& particles, std::span<cons
   const std::vector<ParticleState> states(particles.states.begin(), particles.states.end());
   const std::vector<Weights> weights(particles.weights.begin(), particles.weights.end());
   const ParticleCache cache = particles.cache;
+  const std::optional<CellTally> tally = tally_ != nullptr ? std::optional(*tally_) : std::nullopt;
   try {
     return step_all(particles, targets);
   } catch (...) {
     std::copy(states.begin(), states.end(), particles.states.begin());
     std::copy(weights.begin(), weights.end(), particles.weights.begin());
     particles.cache = cache;
+    if (tally) *tally_ = *tally;
     throw;
   }
 }

@@ -18,6 +18,10 @@
 #include "tracking/batch/travelling_step.hpp"
 #include "tracking/step.hpp"
 
+namespace dartcast {
+class CellTally;  // dartcast/cell_tally.hpp
+}
+
 namespace dartcast::detail {
 
 /// A set of particles: one entry per particle in each.
@@ -69,15 +73,17 @@ ChunkSteps joined(std::vector<ChunkSteps> chunks);
 class BatchStepper {
  public:
   /// `moved`: as for Stepper. `may_throw`: whether `respond` may. `decider`: takes the steps that may meet a wall; none:
-  /// Stepper does. The references must outlive the stepper.
+  /// Stepper does. `tally`: the steps are added to it. The references must outlive the stepper.
   BatchStepper(const CellComplex& complex, bool moved, Threads threads, const StepOptions& options,
-               const ContactCallback& respond, bool may_throw, const StepDecider* decider = nullptr)
+               const ContactCallback& respond, bool may_throw, const StepDecider* decider = nullptr,
+               CellTally* tally = nullptr)
       : complex_(complex),
         moved_(moved),
         threads_(threads),
         options_(options),
         may_throw_(may_throw),
         decider_(decider),
+        tally_(tally),
         stepper_(complex, moved, options, respond) {}
   /// With a response in rounds, which is not empty.
   BatchStepper(const CellComplex& complex, bool moved, Threads threads, const StepOptions& options,
@@ -100,6 +106,8 @@ class BatchStepper {
 
   [[nodiscard]] StepReport step_all(const BatchParticles& particles, std::span<const Vec3> targets) const;
   [[nodiscard]] BatchScene scene_of(ParticleCache& cache, std::size_t count) const;
+  // tallied: there is a tally.
+  template <bool tallied>
   void step_chunk(const BatchScene& scene, const BatchParticles& particles, std::span<const Vec3> targets,
                   std::size_t begin, std::size_t end, ChunkSteps& steps) const;
   void choose(std::span<const ParticleState> states, std::span<const Vec3> targets, std::span<StepTaker> takers,
@@ -125,6 +133,7 @@ class BatchStepper {
   const StepOptions& options_;
   bool may_throw_;
   const StepDecider* decider_ = nullptr;
+  CellTally* tally_ = nullptr;
   const RoundCallback* rounds_ = nullptr;  // none: the stepper responds at each contact
   Stepper stepper_;
 };

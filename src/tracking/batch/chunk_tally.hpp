@@ -1,0 +1,51 @@
+// Adds the steps of a chunk to a tally: those that the batch has completed, and those that a decider has taken.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tracking/batch/batch.hpp"
+#include "tracking/step.hpp"
+#include "tracking/tally_writer.hpp"
+
+namespace dartcast::detail {
+
+class ChunkTally {
+ public:
+  /// Before the steps.
+  void begin(CellTally& tally, std::span<const ParticleState> states, std::span<const Weights> weights) {
+    writer_.emplace(tally);
+    before_.assign(states.begin(), states.end());
+    held_.assign(weights.begin(), weights.end());
+  }
+  /// For the steps that Stepper takes.
+  [[nodiscard]] TallyWriter& writer() { return *writer_; }
+
+  /// After the steps. `contacts`: theirs, of particles that are numbered from `first` on.
+  void add(const Stepper& stepper, const BatchSteps& steps, bool moved, bool decided, std::span<const Contact> contacts,
+           std::size_t first) {
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < before_.size(); ++i) {
+      const ParticleState& before = before_[i];
+      const ParticleState& after = steps.states[i];
+      if (steps.status[i] == step_complete) {
+        if (!moved && before.at() == after.at())
+          writer_->stay(after.cell, norm(after.position - before.position));
+        else
+          stepper.tally_arrived(before, after, *writer_);
+      } else if (decided) {
+        while (next < contacts.size() && contacts[next].particle < first + i) ++next;
+        const bool met = next < contacts.size() && contacts[next].particle == first + i;
+        stepper.tally_straight(before, held_[i], after, met ? contacts[next].time_of_impact : 1.0, *writer_);
+      }
+    }
+  }
+
+ private:
+  std::optional<TallyWriter> writer_;
+  std::vector<ParticleState> before_;
+  std::vector<Weights> held_;
+};
+
+}  // namespace dartcast::detail
