@@ -41,7 +41,7 @@ struct TallySum {
 /// points near walls that move at the same time.
 class CellTally {
  public:
-  /// No sums yet. Cost: linear in the cells, 44 bytes each.
+  /// No sums yet. Cost: linear in the cells, 52 bytes each.
   explicit CellTally(const CellComplex& complex);
 
   // Of one cell. Precondition: it is one of the complex.
@@ -51,14 +51,18 @@ class CellTally {
   /// How often particles have come from another cell.
   [[nodiscard]] std::uint64_t visits(Cell c) const { return of(c).visits; }
 
+  /// Particles that were deposited at its walls: deposit() counts them.
+  [[nodiscard]] std::uint64_t deposited(Cell c) const { return of(c).deposited; }
+
   // Of all particles, summed apart.
   [[nodiscard]] double path_length() const { return length_.value() * unit_; }  ///< m
   [[nodiscard]] double age() const { return time_.value(); }                    ///< in steps
   /// Whether the cells' sums of lengths and times are those of all particles, to the last bit. Cost: linear in the cells.
   [[nodiscard]] bool adds_up() const;
 
-  /// Takes the rest of a step back: the particle, which ends it in this cell, left at `time`, a fraction of the step.
-  void leave(Cell c, double time);
+  /// Takes time back, in steps: a particle that ends its step in this cell had left before.
+  void take_back(Cell c, double time);
+  void deposit(Cell c) { ++of(c).deposited; }
   /// Follows an edit: the sums of cells that it removed go to the cells in their place. These share them by volume: those of
   /// the same source (CombinatorialMap::source()); if there are none, all that the edit has added. Call it after each edit.
   /// Cost: the cells touched.
@@ -76,6 +80,9 @@ class CellTally {
     detail::TallySum length;  // in units
     detail::TallySum time;    // in steps
     std::uint64_t visits = 0;
+    std::uint64_t deposited = 0;
+
+    Sums& operator+=(const Sums& other);
   };
   struct Pool {
     std::vector<Sums> sums;             // by place

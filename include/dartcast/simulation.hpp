@@ -17,6 +17,7 @@
 #include "dartcast/audit.hpp"
 #include "dartcast/bodies.hpp"
 #include "dartcast/catheter.hpp"
+#include "dartcast/cell_tally.hpp"
 #include "dartcast/deformation.hpp"
 #include "dartcast/dynamics.hpp"
 #include "dartcast/environment.hpp"
@@ -354,7 +355,12 @@ class Simulation {
   [[nodiscard]] std::uint64_t alive() const;  ///< the number of particles in the scene
   [[nodiscard]] const StatisticsOptions& statistics_options() const;
   [[nodiscard]] const Statistics& statistics() const;  ///< empty if none are kept
-  [[nodiscard]] double seconds_solids() const;         ///< steps of bodies, catheters and solids so far
+  /// The sums by cell of all ranks; none without StatisticsOptions::cells. Its steps are `dt / substeps` long. Cost: linear
+  /// in the cells. Collective.
+  [[nodiscard]] std::optional<CellTally> cell_tally() const;
+  /// StatisticsOptions::cells as arrays, each with a value for every cell, in the order of CombinatorialMap::cells().
+  [[nodiscard]] std::vector<DataArray> cell_arrays(const CellTally& tally) const;
+  [[nodiscard]] double seconds_solids() const;  ///< steps of bodies, catheters and solids so far
   [[nodiscard]] const EventLog& event_log() const;
   [[nodiscard]] std::vector<BodySummary> body_summaries() const;  ///< by id, those that left included
   [[nodiscard]] std::vector<CatheterSummary> catheter_summaries() const;

@@ -131,6 +131,13 @@ struct ResidenceTimes {
 
 // The statistics that a simulation keeps.
 
+/// The names of quantities that are kept by cell (dartcast/cell_tally.hpp), of the run so far: "track_length" (m),
+/// "residence" (s), "visits", "deposition" (particles that were absorbed or have stuck at a wall of the cell), and
+/// "concentration": the mean number of particles in the cell over its volume as it is now (1/m^3; in the plane 1/m^2).
+std::vector<std::string> cell_quantities();
+/// Throws InvalidArgument if a name is none of these, or is there twice.
+void check_cell_quantities(std::span<const std::string> names);
+
 /// The statistics that a simulation keeps.
 struct StatisticsOptions {
   bool hits = false;                          ///< of wall faces, by particles and spheres
@@ -138,9 +145,10 @@ struct StatisticsOptions {
   std::vector<SectionPlane> planes;           ///< crossings by particles and centres of spheres
   std::uint64_t pathlines_every = 0;          ///< pathlines of the particles whose id is a multiple of it; 0: of none
   std::vector<std::uint64_t> pathlines_of{};  ///< and of these ids
+  std::vector<std::string> cells{};           ///< quantities by cell: some of cell_quantities()
 
   [[nodiscard]] bool pathlines() const { return pathlines_every > 0 || !pathlines_of.empty(); }
-  [[nodiscard]] bool any() const { return hits || residence || !planes.empty() || pathlines(); }
+  [[nodiscard]] bool any() const { return hits || residence || !planes.empty() || pathlines() || !cells.empty(); }
 };
 
 /// A crossing with its time. Residence times count from the start of the first step that a particle takes part in.

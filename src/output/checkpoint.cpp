@@ -273,13 +273,15 @@ void fields(Archive& a, ResidenceTimes& t) {
   for (std::uint64_t& n : t.bins) a.value(n);
 }
 
-bool has_statistics(const StatisticsState& s) { return s.has_hits || s.observes_motion; }
+bool has_statistics(const StatisticsState& s) { return s.has_hits || s.observes_motion || !s.cells.empty(); }
 
 // Nothing if there are no statistics.
 template <class Archive>
 void fields(Archive& a, StatisticsState& s) {
   if (!a.has_more(has_statistics(s))) return;
-  value_as<std::uint8_t>(a, s.has_hits);
+  auto kept = static_cast<std::uint8_t>((s.has_hits ? 1 : 0) | (s.cells.empty() ? 0 : 2));
+  a.value(kept);
+  s.has_hits = (kept & 1) != 0;
   a.list(s.hits, [&](FaceHits& f) { values(a, f.face.cell.value, f.face.face, f.patch.value, f.hits); });
   a.list(s.ended_hits, [&](std::uint64_t& n) { a.value(n); });
   value_as<std::uint8_t>(a, s.observes_motion);
@@ -294,6 +296,7 @@ void fields(Archive& a, StatisticsState& s) {
   fields(a, s.absorbed_by_edits);
   a.list(s.starts, [&](StartTimes::Start& start) { values(a, start.first_id, start.time); });
   a.value(s.next_id);
+  if ((kept & 2) != 0) a.list(s.cells, [&](std::uint64_t& word) { a.value(word); });
 }
 
 template <class Archive>

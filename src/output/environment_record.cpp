@@ -104,15 +104,21 @@ XmlDataSet EnvironmentRecord::data_set(const Environment& environment) {
   }
   XmlDataSet data = *kept_;
   data.section("Points").arrays.emplace_back("Points", std::move(points));
+  for (const DataArray& a : cell_arrays_) {
+    std::vector<double> values = a.values;
+    if (edits == 0) {
+      const std::vector<Cell> cells = environment.map().cells();
+      for (std::size_t i = 0; i < cells.size(); ++i) values[row(environment.map().source(cells[i]))] = a.values[i];
+    }
+    data.section("CellData").arrays.emplace_back(a.name, std::move(values));
+  }
   return data;
 }
 
 // The rows of mesh_ that the cells came from.
 std::vector<std::size_t> EnvironmentRecord::rows(const MeshData& edited) const {
-  std::vector<std::size_t> rows(edited.source.begin(), edited.source.end());
-  if (!row_of_.empty()) {
-    for (std::size_t& row : rows) row = row_of_[row];
-  }
+  std::vector<std::size_t> rows;
+  for (const std::uint32_t source : edited.source) rows.push_back(row(source));
   return rows;
 }
 

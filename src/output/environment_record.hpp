@@ -30,9 +30,12 @@ class EnvironmentRecord {
   /// As it is now: with a copy of the positions, and arrays that all data sets share until the next edit. They must be
   /// written with the same compression, by one thread at a time. Cost: that of the copy; after an edit linear.
   [[nodiscard]] XmlDataSet data_set(const Environment& environment);
+  /// Later data sets have these, too: values of all cells, in the order of CombinatorialMap::cells().
+  void set_cell_arrays(std::vector<DataArray> arrays) { cell_arrays_ = std::move(arrays); }
 
  private:
   [[nodiscard]] MeshData edited_mesh(const CellComplex& complex);
+  [[nodiscard]] std::size_t row(std::uint32_t source) const { return row_of_.empty() ? source : row_of_[source]; }
   [[nodiscard]] std::vector<std::size_t> rows(const MeshData& edited) const;
   void keep(const std::shared_ptr<const MeshData>& mesh);
 
@@ -41,7 +44,8 @@ class EnvironmentRecord {
   std::optional<std::vector<DataArray>> at_vertices_;  // mesh_'s arrays at points, since the first edit
   std::optional<XmlDataSet> kept_;                     // without the points
   std::vector<Vertex> vertices_;                       // of its points
-  std::uint64_t edits_ = 0;                            // that it has followed
+  std::vector<DataArray> cell_arrays_;
+  std::uint64_t edits_ = 0;  // that it has followed
 };
 
 }  // namespace dartcast

@@ -78,11 +78,11 @@ bool is_list(std::string_view name) {
 
 bool is_run_file(std::string_view name) {
   if (is_part_of_run_file(name)) return true;
-  static constexpr std::array<std::string_view, 22> fixed = {
+  static constexpr std::array<std::string_view, 23> fixed = {
       "summary.json",  "stats.csv",          "particles.pvd",  "environment.pvd", "environment.vtu", "contacts.csv",
       "scene.toml",    "checkpoint.bin",     "bodies.csv",     "catheters.csv",   "walls.pvd",       "planes.csv",
       "crossings.csv", "pathlines.bin",      "pathlines.vtp",  "report.bin",      "report.html",     kept_mesh_name,
-      "solids.csv",    "solid_contacts.csv", "deposition.csv", replay_name};
+      "solids.csv",    "solid_contacts.csv", "deposition.csv", "cells.csv",       replay_name};
   if (std::find(fixed.begin(), fixed.end(), name) != fixed.end()) return true;
   return is_list(name) || frame_step(name) || checkpoint_part_step(name);
 }

@@ -53,7 +53,7 @@ void remove_earlier_parts(const std::filesystem::path& folder, std::uint64_t ste
 RunOutput::RunOutput(const Scene& scene, const RunOptions& options, Summary& summary)
     : scene_(scene),
       folder_(options.folder),
-      recording_options_{summary.deforms || summary.surgery,
+      recording_options_{summary.deforms || summary.surgery || !scene.statistics.options.cells.empty(),
                          summary.surgery.has_value(),
                          scene.output.contacts,
                          scene.output.compression,
@@ -169,6 +169,8 @@ void RunOutput::add_step(const Simulation& simulation, const SimulationStep& ste
 void RunOutput::add_frame(const Simulation& simulation, bool last) {
   if (folder().empty() || (!last && !on_schedule(simulation.steps()))) return;
   follow_balance(simulation);
+  cells_ = simulation.cell_tally();
+  if (cells_ && record_) record_->set_cell_arrays(simulation.cell_arrays(*cells_));
   if (share_.is_first()) return write_frame(simulation);
   write_part(simulation);
   if (!wants_report()) return;
@@ -226,8 +228,10 @@ void RunOutput::write_frame(const Simulation& simulation) {
   files.frames = frames_;
   for (const Clocked& c : recorders_) c.recorder->save(files);
   const std::uint64_t audited = summary_.audit ? summary_.audit->checked : 0;
-  auto checkpoint = std::make_shared<Checkpoint>(Checkpoint{
-      identity_, every_, simulation.checkpoint().state(), std::move(files), summary_.held, audited, std::move(parts)});
+  SimulationState state = simulation.checkpoint().state();
+  if (cells_) state.statistics.cells = cells_->words();
+  auto checkpoint = std::make_shared<Checkpoint>(
+      Checkpoint{identity_, every_, std::move(state), std::move(files), summary_.held, audited, std::move(parts)});
   writing_->add(checkpoint->simulation.particles.table.bytes(), [checkpoint, path = file()] {
     write_checkpoint(path, *checkpoint);
     remove_earlier_parts(path.parent_path(), checkpoint->simulation.particles.steps);
@@ -279,8 +283,30 @@ void RunOutput::finish_files(const Simulation& simulation) {
     const std::string_view whole = table;
     replace_file(folder() / "deposition.csv", {&whole, 1});
   }
+  if (cells_) write_cells(simulation);
   write_summary();
   if (wants_report()) write_report_of_run();
+}
+
+// By the order of cells. Centres are means of corners.
+void RunOutput::write_cells(const Simulation& simulation) const {
+  const CombinatorialMap& map = simulation.environment().map();
+  const std::vector<DataArray> arrays = simulation.cell_arrays(*cells_);
+  const std::vector<Cell> cells = map.cells();
+  std::string table = "cell,x,y,z";
+  for (const DataArray& a : arrays) table += "," + a.name;
+  table += "\n";
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::span<const std::uint32_t> corners = map.view(cells[i]).vertices();
+    Vec3 centre;
+    for (const std::uint32_t v : corners) centre += simulation.environment().complex().positions()[v];
+    centre = centre * (1.0 / static_cast<double>(corners.size()));
+    table += fmt::format("{},{},{},{}", map.source(cells[i]), centre.x, centre.y, centre.z);
+    for (const DataArray& a : arrays) table += fmt::format(",{}", a.values[i]);
+    table += "\n";
+  }
+  const std::string_view whole = table;
+  replace_file(folder() / "cells.csv", {&whole, 1});
 }
 
 void RunOutput::write_summary() const {

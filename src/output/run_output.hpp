@@ -69,6 +69,7 @@ class RunOutput {
   [[nodiscard]] std::vector<std::uint64_t> written_parts() const;
   void write_frame(const Simulation& simulation);
   void record_frame(const Simulation& simulation);
+  void write_cells(const Simulation& simulation) const;
   void finish_files(const Simulation& simulation);
   void write_summary() const;
   void write_report_of_run();
@@ -88,6 +89,7 @@ class RunOutput {
   RunLock lock_;
   std::optional<EnvironmentRecord> record_;  // of the cells that this rank has now; none: no later frame shows it
   std::uint64_t balanced_ = 0;               // how often cells had moved to other ranks when it was made
+  std::optional<CellTally> cells_;           // of all ranks, at the last frame
   std::vector<RecordingFrame> frames_;       // on the first rank
   std::optional<Checkpoint> found_;
   std::unique_ptr<WritingThread> writing_;  // before what leaves files to it

@@ -35,6 +35,17 @@ void read_pathlines(TomlTable t, StatisticsOptions& options) {
   t.finish();
 }
 
+void read_cells(TomlTable t, std::vector<std::string>& quantities) {
+  t.require("quantities", "some of the quantities that docs/scene.md lists");
+  t.get("quantities", quantities);
+  try {
+    check_cell_quantities(quantities);
+  } catch (const Error& e) {
+    t.fail("quantities", e.what());
+  }
+  t.finish();
+}
+
 }  // namespace
 
 StatisticsScene read_statistics(TomlTable t) {
@@ -45,6 +56,7 @@ StatisticsScene read_statistics(TomlTable t) {
   t.get("crossings", scene.crossings);
   if (scene.crossings && scene.options.planes.empty())
     t.fail("crossings", "crossings = true: there is no plane; add [[statistics.plane]]");
+  if (t.has("cells")) read_cells(t.table("cells"), scene.options.cells);
   if (t.has("pathlines")) read_pathlines(t.table("pathlines"), scene.options);
   t.finish();
   return scene;

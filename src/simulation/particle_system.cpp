@@ -10,6 +10,7 @@
 
 #include "base/are_several.hpp"
 #include "complex/simplex.hpp"
+#include "dartcast/cell_tally.hpp"
 #include "dartcast/error.hpp"
 #include "simulation/force_step.hpp"
 #include "simulation/polyline.hpp"
@@ -68,6 +69,21 @@ void check_wall_motion(const SimulationOptions& o) {
         "wall "
         "motion carried");
 }
+
+// While it lives, steps in the environment are added to a tally; null: as before.
+class TallyUse {
+ public:
+  TallyUse(Environment& environment, CellTally* tally) : environment_(environment), former_(environment.tally()) {
+    if (tally != nullptr) environment.set_tally(tally);
+  }
+  TallyUse(const TallyUse&) = delete;
+  TallyUse& operator=(const TallyUse&) = delete;
+  ~TallyUse() { environment_.set_tally(former_); }
+
+ private:
+  Environment& environment_;
+  CellTally* former_;
+};
 
 void check(const SimulationOptions& o, bool planar) {
   if (!(o.dt >= smallest_dt && o.dt <= largest_dt))
@@ -174,6 +190,7 @@ void ParticleSystem::advance_segment(unsigned segment, std::vector<std::uint8_t>
   }
   const ScopeTimer timer(totals_.seconds_detect);
   const ContactCallback respond = response(dt);
+  const TallyUse use(environment_, tally_);
   if (set_.spheres == 0) {
     StepReport report =
         part_ != nullptr ? advance_in_part(aiming_.acceleration(dt), departed)
@@ -220,6 +237,7 @@ void ParticleSystem::count_contacts() {
     const bool is_last = &c == &list.contacts.back() || (&c)[1].particle != c.particle;
     const ParticleStatus end = set_.statuses()[c.particle];
     if (!is_last || end == ParticleStatus::alive) continue;  // a stuck particle has no contacts after this
+    if (tally_ != nullptr && end != ParticleStatus::escaped) tally_->deposit(wall.face.cell);
     ++(end == ParticleStatus::escaped ? totals_.escaped_by_patch : totals_.deposited_by_patch)[wall.patch.value];
   }
 }
@@ -243,6 +261,8 @@ void ParticleSystem::remove_gone(std::span<const std::uint8_t> departed) {
     gone[i] = 1;
     while (next < contacts.size() && contacts[next].particle <= i) ++next;
     last_.left.push_back({ids[i], statuses[i], set_.states[i].position, next - 1});
+    if (tally_ != nullptr)
+      tally_->take_back(set_.states[i].cell, (1.0 - contacts[next - 1].time_of_impact) * options_.substeps);
     ++(statuses[i] == ParticleStatus::absorbed ? absorbed : last_.escaped);
     gone_.add(ids[i], whole_state(i), set_.velocities()[i], static_cast<std::uint64_t>(statuses[i]));
   }

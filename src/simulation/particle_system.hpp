@@ -37,6 +37,8 @@ class ParticleSystem final : public SimulationComponent {
   [[nodiscard]] SampledFields& sampled() { return sampled_; }
   /// Gives all particles the values of the sampled arrays at their places now.
   void take_samples() { sampled_.take(set_, motion_.time()); }
+  /// Steps are added to it; null: to none.
+  void set_tally(CellTally* tally) { tally_ = tally; }
   /// The environment is a part of one that ranks share by cells. Precondition: there are no particles.
   void set_part(PartEnvironment& part);
   [[nodiscard]] std::optional<SampledPart> sampled_part() const;
@@ -107,6 +109,7 @@ class ParticleSystem final : public SimulationComponent {
   Environment& environment_;
   MovingVertices& motion_;
   SimulationOptions options_;
+  CellTally* tally_ = nullptr;
   PartEnvironment* part_ = nullptr;  // none: the environment is whole
   WallResponses responses_;
   ParticleSet set_;

@@ -81,7 +81,14 @@ void Simulation::set_adaptive_subdivision(const AdaptiveSubdivisionScene& subdiv
   parts_->events.set_adaptive_subdivision(subdivision);
 }
 
-void Simulation::set_statistics(const StatisticsOptions& options) { parts_->statistics.set_options(options); }
+void Simulation::set_statistics(const StatisticsOptions& options) {
+  if (!options.cells.empty() && parts_->part)
+    throw InvalidArgument(
+        "simulation: quantities by cell are not kept if ranks share the cells: let them share the "
+        "particles");
+  parts_->statistics.set_options(options);
+  parts_->particles.set_tally(parts_->statistics.tally());
+}
 const StatisticsOptions& Simulation::statistics_options() const { return parts_->statistics.options(); }
 const Statistics& Simulation::statistics() const { return parts_->statistics.statistics(); }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/reduced.hpp"
+#include "dartcast/cell_tally.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/simulation.hpp"
 #include "environment/audit_of_all.hpp"
@@ -33,6 +34,11 @@ void add_sums(SimulationTotals& all, const SimulationTotals& t) {
     all.deposited_by_patch[i] += t.deposited_by_patch[i];
     all.escaped_by_patch[i] += t.escaped_by_patch[i];
   }
+}
+
+// Digits of 32 bits, which are carried where they are read (CellTally::words()).
+void add_words(std::span<const std::uint64_t> words, std::span<std::uint64_t> all) {
+  for (std::size_t i = 0; i < words.size(); ++i) all[i] += words[i];
 }
 
 std::string packed(const SimulationTotals& t) {
@@ -81,6 +87,17 @@ std::uint64_t Simulation::alive() const {
   return count;
 }
 
+std::optional<CellTally> Simulation::cell_tally() const {
+  const CellTally* own = parts_->statistics.tally();
+  if (own == nullptr) return {};
+  CellTally all = *own;
+  if (!are_several(options().ranks)) return all;
+  std::vector<std::uint64_t> words = own->words();
+  options().ranks->sum(words);
+  all.set_words(words);
+  return all;
+}
+
 SimulationEnergy Simulation::energy() const { return parts_->particles.energy(); }
 
 Audit Simulation::audit() const {
@@ -115,6 +132,8 @@ SimulationCheckpoint joined(std::span<const SimulationCheckpoint> parts) {
     if (all.particles.table.rows() == 0) (all.particles.table = p.table).truncate(0);
     for (std::size_t i = 0; i < p.table.rows(); ++i) all.particles.table.append(p.table, i);
     all.particles.gone += p.gone;
+    const std::vector<std::uint64_t>& cells = part.state().statistics.cells;
+    if (cells.size() == all.statistics.cells.size()) add_words(cells, all.statistics.cells);
     add_sums(all.particles.totals, p.totals);
   }
   all.particles.table.sort_by(all.particles.table.id);  // as one process has them

@@ -65,6 +65,7 @@ struct StatisticsState {
   ResidenceTimes absorbed_by_edits;
   std::vector<StartTimes::Start> starts;
   std::uint64_t next_id = 0;
+  std::vector<std::uint64_t> cells;  ///< words of the tally; empty: none
 };
 
 struct SimulationState {

@@ -31,12 +31,15 @@ std::vector<Vec3> positions_of(const Particles& particles) {
 
 void StatisticsComponent::set_options(const StatisticsOptions& options) {
   dartcast::check(options.planes);
+  check_cell_quantities(options.cells);
   options_ = options;
   std::sort(options_.pathlines_of.begin(), options_.pathlines_of.end());
   statistics_ = {};
   statistics_.planes.resize(options.planes.size());
   if (options.residence) statistics_.left.resize(particles_.environment().map().patch_names().size());
   starts_ = {};
+  tally_.reset();
+  if (!options.cells.empty()) tally_.emplace(particles_.environment().complex());
 }
 
 void StatisticsComponent::note_start() {
@@ -159,7 +162,8 @@ void StatisticsComponent::add_contacts(std::size_t i, std::size_t first, std::si
   }
 }
 
-void StatisticsComponent::update_after_edit(const ComplexEditReport& /*edit*/, OrphanPolicy /*orphaned*/) {
+void StatisticsComponent::update_after_edit(const ComplexEditReport& edit, OrphanPolicy /*orphaned*/) {
+  if (tally_) tally_->update_after_edit(particles_.environment().complex(), edit);
   if (options_.hits) statistics_.hits.update_after_edit(particles_.environment());
   if (!options_.residence) return;
   starts_.add(particles_.set().next_id, particles_.motion().time());
@@ -170,10 +174,19 @@ void StatisticsComponent::update_after_edit(const ComplexEditReport& /*edit*/, O
     statistics_.absorbed_by_edits.add(p.age, particles_.options().dt);
 }
 
+Audit StatisticsComponent::audit() const {
+  Audit audit;
+  if (!tally_ || tally_->adds_up()) return audit;
+  audit.failed = 1;
+  audit.first = "the sums of all cells are not those of all particles";
+  return audit;
+}
+
 void StatisticsComponent::check(const SimulationState& state) const {
   const StatisticsState& saved = state.statistics;
   if (saved.has_hits != options_.hits || saved.observes_motion != observes_motion() ||
-      saved.planes.size() != options_.planes.size() || saved.left.size() != statistics_.left.size())
+      saved.planes.size() != options_.planes.size() || saved.left.size() != statistics_.left.size() ||
+      saved.cells.empty() == tally_.has_value())
     throw InvalidArgument("simulation: the checkpoint has other statistics: set those that it was saved with");
 }
 
@@ -188,10 +201,15 @@ void StatisticsComponent::save(SimulationState& state) const {
   saved.absorbed_by_edits = statistics_.absorbed_by_edits;
   saved.starts = starts_.starts();
   saved.next_id = starts_.next_id();
+  saved.cells = tally_ ? tally_->words() : std::vector<std::uint64_t>();
 }
 
 void StatisticsComponent::restore(const SimulationState& state) {
   const StatisticsState& saved = state.statistics;
+  if (tally_) {  // its sums are those of all ranks
+    tally_.emplace(particles_.environment().complex());
+    if (particles_.share().is_first()) tally_->set_words(saved.cells);
+  }
   statistics_.hits.restore(particles_.environment(), saved.hits, saved.ended_hits);
   statistics_.planes = saved.planes;
   statistics_.left = saved.left;

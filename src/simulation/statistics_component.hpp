@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "dartcast/cell_tally.hpp"
 #include "dartcast/statistics.hpp"
 #include "simulation/component.hpp"
 #include "simulation/particle_system.hpp"
@@ -29,6 +31,8 @@ class StatisticsComponent final : public SimulationComponent {
   void set_options(const StatisticsOptions& options);
   [[nodiscard]] const StatisticsOptions& options() const { return options_; }
   [[nodiscard]] const Statistics& statistics() const { return statistics_; }
+  /// None if no quantity is kept by cell.
+  [[nodiscard]] CellTally* tally() { return tally_ ? &*tally_ : nullptr; }
   [[nodiscard]] double& seconds() { return statistics_.seconds; }
   /// Throws InvalidArgument if the state is of a simulation with other statistics.
   void check(const SimulationState& state) const;
@@ -44,7 +48,8 @@ class StatisticsComponent final : public SimulationComponent {
   void update_after_edit(const ComplexEditReport& edit, OrphanPolicy orphaned) override;
   void save(SimulationState& state) const override;
   void restore(const SimulationState& state) override;
-  [[nodiscard]] Audit audit() const override { return {}; }
+  /// Whether the tally adds up.
+  [[nodiscard]] Audit audit() const override;
   [[nodiscard]] StateHash state_hash() const override { return {}; }
 
  private:
@@ -61,6 +66,7 @@ class StatisticsComponent final : public SimulationComponent {
   const ParticleSystem& particles_;
   StatisticsOptions options_;
   Statistics statistics_;
+  std::optional<CellTally> tally_;
   StartTimes starts_;
   std::vector<Leaving> leavings_;  // of the last step, by id
   // The particles of the step, as they were after the injection.

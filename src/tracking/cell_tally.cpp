@@ -22,7 +22,7 @@ __extension__ using Wide = unsigned __int128;
 using detail::TallySum;
 
 constexpr std::size_t digits_of_sum = 4;  // of 32 bits, each in a word: carries of many sums have room
-constexpr std::size_t words_of_cell = 2 * digits_of_sum + 1;
+constexpr std::size_t words_of_cell = 2 * digits_of_sum + 2;
 
 Wide wide(const TallySum& s) { return (Wide{s.high} << 64U) | s.low; }
 TallySum sum_of(Wide w) { return {static_cast<std::uint64_t>(w), static_cast<std::uint64_t>(w >> 64U)}; }
@@ -84,6 +84,14 @@ void CellTally::fit(const CellComplex& complex) {
   }
 }
 
+CellTally::Sums& CellTally::Sums::operator+=(const Sums& other) {
+  add(length, other.length);
+  add(time, other.time);
+  visits += other.visits;
+  deposited += other.deposited;
+  return *this;
+}
+
 bool CellTally::adds_up() const {
   TallySum length;
   TallySum time;
@@ -96,11 +104,12 @@ bool CellTally::adds_up() const {
   return length == length_ && time == time_;
 }
 
-void CellTally::leave(Cell c, double time) {
+void CellTally::take_back(Cell c, double time) {
+  if (!(time > 0.0)) return;
   Sums& sums = of(c);
-  Wide rest = wide({0, 1});
-  rest = time >= 1.0 ? 0 : rest - (Wide{detail::tally_units(std::max(time, 0.0))} << 2U);
-  rest = std::min(rest, wide(sums.time));
+  const double whole = std::floor(time);
+  const Wide asked = wide({detail::tally_units(time - whole) << 2U, static_cast<std::uint64_t>(whole)});
+  const Wide rest = std::min(asked, wide(sums.time));
   sums.time = sum_of(wide(sums.time) - rest);
   time_ = sum_of(wide(time_) - rest);
 }
@@ -115,11 +124,13 @@ void CellTally::share_out(const CellComplex& complex, const Sums& sums, std::spa
     const bool is_last = i + 1 == cells.size();
     const double share = is_last || !(whole > 0.0) ? 1.0 : std::min(so_far / whole, 1.0);
     const Sums upto{sum_of(part_of(wide(sums.length), share)), sum_of(part_of(wide(sums.time), share)),
-                    static_cast<std::uint64_t>(part_of(sums.visits, share))};
+                    static_cast<std::uint64_t>(part_of(sums.visits, share)),
+                    static_cast<std::uint64_t>(part_of(sums.deposited, share))};
     Sums& to = of(cells[i]);
     add(to.length, sum_of(wide(upto.length) - wide(given.length)));
     add(to.time, sum_of(wide(upto.time) - wide(given.time)));
     to.visits += upto.visits - given.visits;
+    to.deposited += upto.deposited - given.deposited;
     given = upto;
   }
 }
@@ -130,10 +141,7 @@ void CellTally::update_after_edit(const CellComplex& complex, const ComplexEditR
   for (const CellHandle& h : edit.map.removed) {
     if (h.cell.index() >= pools_[h.cell.pool()].sums.size()) continue;  // added and removed by the same edit
     Sums& sums = of(h.cell);
-    Sums& all = removed[pools_[h.cell.pool()].source[h.cell.index()]];
-    add(all.length, sums.length);
-    add(all.time, sums.time);
-    all.visits += sums.visits;
+    removed[pools_[h.cell.pool()].source[h.cell.index()]] += sums;
     sums = {};
   }
   fit(complex);
@@ -153,9 +161,7 @@ void CellTally::update_after_edit(const CellComplex& complex, const ComplexEditR
       share_out(complex, sums, found->second);
       continue;
     }
-    add(others.length, sums.length);
-    add(others.time, sums.time);
-    others.visits += sums.visits;
+    others += sums;
   }
   if (!added.empty()) share_out(complex, others, added);
 }
@@ -169,6 +175,7 @@ std::vector<std::uint64_t> CellTally::words() const {
       put(s.length, words);
       put(s.time, words);
       words.push_back(s.visits);
+      words.push_back(s.deposited);
     }
   }
   return words;
@@ -188,8 +195,9 @@ void CellTally::set_words(std::span<const std::uint64_t> words) {
     for (Sums& s : pool.sums) {
       s.length = taken(words);
       s.time = taken(words);
-      s.visits = words.front();
-      words = words.subspan(1);
+      s.visits = words[0];
+      s.deposited = words[1];
+      words = words.subspan(2);
     }
   }
 }

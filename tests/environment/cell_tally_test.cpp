@@ -269,7 +269,7 @@ TEST(CellTally, TakesBackTheTimeAfterLeaving) {
   const Vec3 to{3.5, 1.6, 1.7};
   environment.add(particles, {&from, 1});
   const StepReport report = environment.advance(particles, {&to, 1});
-  tally.leave(particles[0].cell, report.contacts.contacts.at(0).time_of_impact);
+  tally.take_back(particles[0].cell, 1.0 - report.contacts.contacts.at(0).time_of_impact);
   EXPECT_NEAR(tally.age(), 0.75, 1e-12);
   EXPECT_TRUE(tally.adds_up());
   const RoundCallback rounds = [](const ContactList&, std::span<AfterContact>) {};
