@@ -44,7 +44,7 @@ class CellTally {
   /// No sums yet. Cost: linear in the cells, 52 bytes each.
   explicit CellTally(const CellComplex& complex);
 
-  // Of one cell. Precondition: it is one of the complex.
+  // The sums of a cell. Precondition: it is one of the complex.
   [[nodiscard]] double track_length(Cell c) const { return of(c).length.value() * unit_; }  ///< m
   /// Time that particles have spent there, in steps: the duration of a step makes seconds of it.
   [[nodiscard]] double residence(Cell c) const { return of(c).time.value(); }
@@ -54,7 +54,7 @@ class CellTally {
   /// Particles that were deposited at its walls: deposit() counts them.
   [[nodiscard]] std::uint64_t deposited(Cell c) const { return of(c).deposited; }
 
-  // Of all particles, summed apart.
+  // The sums of all particles, which are kept apart.
   [[nodiscard]] double path_length() const { return length_.value() * unit_; }  ///< m
   [[nodiscard]] double age() const { return time_.value(); }                    ///< in steps
   /// Whether the cells' sums of lengths and times are those of all particles, to the last bit. Cost: linear in the cells.
@@ -64,10 +64,13 @@ class CellTally {
   void take_back(Cell c, double time);
   void deposit(Cell c) { ++of(c).deposited; }
   /// Follows an edit: the sums of cells that it removed go to the cells in their place. These share them by volume: those of
-  /// the same source (CombinatorialMap::source()); if there are none, all that the edit has added. Call it after each edit.
+  /// the same source (CombinatorialMap::source()); if there are none, all that the edit has added. If it has added none, its sums are
+  /// given up, and taken from those of all particles. Call it after each edit.
   /// Cost: the cells touched.
   void update_after_edit(const CellComplex& complex, const ComplexEditReport& edit);
 
+  /// Begins anew with the complex as it is now, without sums. The unit of lengths stays.
+  void reset(const CellComplex& complex);
   /// All sums as words. Those of several tallies of one complex, each word added to its like, are words of their sum.
   [[nodiscard]] std::vector<std::uint64_t> words() const;
   /// Goes on from words(). Throws InvalidArgument, nothing changed, if there are more or fewer than of this complex.

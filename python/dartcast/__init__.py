@@ -8,7 +8,7 @@ scenes as data, reports) and dartcast.records (what calls return, and options of
 """
 from ._core import (
     __version__ as __version__, Absorb as Absorb, advance as advance, advance_spheres as advance_spheres,
-    audit as audit, Bodies as Bodies, BodyOptions as BodyOptions, carve as carve, Catheter as Catheter,
+    audit as audit, Bodies as Bodies, BodyOptions as BodyOptions, carve as carve, Catheter as Catheter, CellTally as CellTally,
     CatheterInput as CatheterInput, CatheterOptions as CatheterOptions, cells_near as cells_near,
     check_and_repair as check_and_repair, CollisionOptions as CollisionOptions, cut as cut,
     Deformation as Deformation, DeformationStep as DeformationStep, Disc as Disc, EditRefused as EditRefused,

@@ -128,6 +128,27 @@ Typed<"Records or tuple[Records, NDArray[uint32], NDArray[uint64]]"> cast_rays(c
                         array_of(std::vector<std::uint64_t>(passed.first.begin(), passed.first.end())));
 }
 
+Typed<"tuple[Records, NDArray[uint32], NDArray[uint64], NDArray[float64]]"> cast_rays_with_lengths(
+    const EnvironmentHandle& h, const Typed<"Points">& origins, const Typed<"Points">& directions, double max_distance,
+    bool lengths) {
+  if (!lengths) throw InvalidArgument("cast_rays: lengths is False: leave it out");
+  const Use use(*h.usage, "the environment");
+  const auto starts = vectors(origins, "origins");
+  const auto ways = vectors(directions, "directions");
+  std::vector<RayHit> hits;
+  RayCells passed;
+  {
+    const py::gil_scoped_release release;
+    hits = h.environment->cast_rays(starts, ways, max_distance, &passed);
+  }
+  std::vector<std::uint32_t> numbers;
+  numbers.reserve(passed.cells.size());
+  for (const Cell cell : passed.cells) numbers.push_back(cell.value);
+  return py::make_tuple(rows_of(hits), array_of(std::move(numbers)),
+                        array_of(std::vector<std::uint64_t>(passed.first.begin(), passed.first.end())),
+                        array_of(std::move(passed.lengths)));
+}
+
 void bind_queries(EnvironmentClass& c) {
   c.def(
       "cast_rays", &cast_rays, py::arg("origins"), py::arg("directions"),
@@ -137,6 +158,9 @@ void bind_queries(EnvironmentClass& c) {
           "origins, directions: float64 (n, 3). Returns a structured array, one row for each ray: origin (place), hit, "
           "kind, cell, face, triangle, patch, distance, point, normal, invalid_cell. With cells=True a tuple: these "
           "rows, the cells that all rays pass, and of each ray the first of its cells, with their number at the end."));
+  c.def("cast_rays", &cast_rays_with_lengths, py::arg("origins"), py::arg("directions"),
+        py::arg("max_distance") = std::numeric_limits<double>::infinity(), py::kw_only(), py::arg("lengths"),
+        "With lengths=True the tuple of cells=True, and the length of the way in each of these cells.");
   c.def("locate", &locate, py::arg("x"),
         about("Environment::locate",
               "x: one point, or float64 (n, 3). Returns a Location; or a structured array: place, kind, simplex, dart, "

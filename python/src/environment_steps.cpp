@@ -49,7 +49,8 @@ StepReport advance(const EnvironmentHandle& h, ParticlesHandle& p, const Typed<"
   const Answers answers(arguments, e.map(), p.particles.size());
   const StepOptions chosen = options;
   const py::gil_scoped_release release;
-  if (answers.in_rounds()) return e.advance_in_rounds(p.particles, targets.get(), answers.round(), chosen);
+  if (answers.in_rounds() && e.tally() == nullptr)
+    return e.advance_in_rounds(p.particles, targets.get(), answers.round(), chosen);
   return e.advance(p.particles, targets.get(), answers.each("advance"), chosen);
 }
 

@@ -49,6 +49,19 @@ std::optional<std::shared_ptr<BodiesHandle>> bodies(const Handle& self) {
   return lent(self.environment, self.owner, found);
 }
 
+// Those of all ranks, by name.
+py::dict cell_arrays(const Handle& self) {
+  std::vector<DataArray> arrays;
+  {
+    const Use use = self.use();
+    const std::optional<CellTally> tally = self.get().cell_tally();
+    if (tally) arrays = self.get().cell_arrays(*tally);
+  }
+  py::dict found;
+  for (DataArray& a : arrays) found[py::str(a.name)] = array_of(std::move(a.values));
+  return found;
+}
+
 void check_catheter(const Simulation& s, std::size_t i) {
   if (i >= s.catheter_count()) {
     throw InvalidArgument("there is no catheter " + std::to_string(i) + ": there are " +
@@ -103,6 +116,10 @@ void bind_solids(Class& c) {
   c.def_property_readonly(
       "bodies", &bodies,
       "The bodies; None where no body has been added. Set their velocities between steps; the simulation steps them.");
+  c.def("cell_arrays", &cell_arrays,
+        "The quantities of StatisticsOptions.cells by name: arrays with a value for each cell, in the order of "
+        "map.cells(). "
+        "Of all ranks: collective.");
   c.def("catheter", &catheter, py::arg("i"), "A catheter, which the simulation steps.");
   c.def("catheter_step", &catheter_step, py::arg("i"), doc("Simulation::catheter_step"));
   c.def_property_readonly("solids", &solids, "The solids, which the simulation moves; None where there are none.");

@@ -104,6 +104,10 @@ void bind_planes(py::module_& m) {
 }  // namespace
 
 void bind(py::module_& m) {
+  m.def("cell_quantities", &cell_quantities, about("cell_quantities"));
+  m.def(
+      "check_cell_quantities", [](const std::vector<std::string>& names) { check_cell_quantities(names); },
+      about("check_cell_quantities"));
   bind_hits(m);
   bind_planes(m);
   m.def(

@@ -163,7 +163,12 @@ void StatisticsComponent::add_contacts(std::size_t i, std::size_t first, std::si
 }
 
 void StatisticsComponent::update_after_edit(const ComplexEditReport& edit, OrphanPolicy /*orphaned*/) {
-  if (tally_) tally_->update_after_edit(particles_.environment().complex(), edit);
+  if (tally_) {
+    std::vector<std::uint64_t> words = tally_->words();
+    sum_over(particles_.options().ranks, words);
+    keep_on_first(words);  // shares of a sum are rounded: they are not sums of shares
+    tally_->update_after_edit(particles_.environment().complex(), edit);
+  }
   if (options_.hits) statistics_.hits.update_after_edit(particles_.environment());
   if (!options_.residence) return;
   starts_.add(particles_.set().next_id, particles_.motion().time());
@@ -172,6 +177,12 @@ void StatisticsComponent::update_after_edit(const ComplexEditReport& edit, Orpha
     absorbed.push_back({id, ParticleStatus::absorbed, {}, particles_.motion().time() - starts_.of(id)});
   for (const Leaving& p : gathered_by_id(particles_.options().ranks, std::move(absorbed)))
     statistics_.absorbed_by_edits.add(p.age, particles_.options().dt);
+}
+
+// The sums of all ranks.
+void StatisticsComponent::keep_on_first(std::vector<std::uint64_t> words) {
+  if (!particles_.share().is_first()) std::fill(words.begin(), words.end(), 0);
+  tally_->set_words(words);
 }
 
 Audit StatisticsComponent::audit() const {
@@ -206,9 +217,9 @@ void StatisticsComponent::save(SimulationState& state) const {
 
 void StatisticsComponent::restore(const SimulationState& state) {
   const StatisticsState& saved = state.statistics;
-  if (tally_) {  // its sums are those of all ranks
-    tally_.emplace(particles_.environment().complex());
-    if (particles_.share().is_first()) tally_->set_words(saved.cells);
+  if (tally_) {
+    tally_->reset(particles_.environment().complex());
+    keep_on_first(saved.cells);
   }
   statistics_.hits.restore(particles_.environment(), saved.hits, saved.ended_hits);
   statistics_.planes = saved.planes;

@@ -56,6 +56,7 @@ class StatisticsComponent final : public SimulationComponent {
   [[nodiscard]] bool observes_motion() const {
     return options_.residence || !options_.planes.empty() || options_.pathlines();
   }
+  void keep_on_first(std::vector<std::uint64_t> words);
   void find_ends();
   void find_passages(double begin);
   void find_leavings(double begin);

@@ -50,7 +50,7 @@ double volume6(const CellComplex& complex, Cell c) {
   return std::max(sum, 0.0);
 }
 
-// What the first cells of a list get of a whole. It never falls as the share grows.
+// The part of a whole that the first cells of a list get. It never falls as the share grows.
 Wide part_of(Wide whole, double share) {
   const double part = static_cast<double>(whole) * share;
   return part < static_cast<double>(whole) ? std::min(static_cast<Wide>(part), whole) : whole;
@@ -72,7 +72,11 @@ TallySum taken(std::span<const std::uint64_t>& words) {
 
 }  // namespace
 
-CellTally::CellTally(const CellComplex& complex) : unit_(unit_for(complex.positions())) {
+CellTally::CellTally(const CellComplex& complex) : unit_(unit_for(complex.positions())) { reset(complex); }
+
+void CellTally::reset(const CellComplex& complex) {
+  pools_ = {};
+  length_ = time_ = {};
   fit(complex);
   for (const Cell c : complex.map().cells()) pools_[c.pool()].source[c.index()] = complex.map().source(c);
 }
@@ -163,7 +167,9 @@ void CellTally::update_after_edit(const CellComplex& complex, const ComplexEditR
     }
     others += sums;
   }
-  if (!added.empty()) share_out(complex, others, added);
+  if (!added.empty()) return share_out(complex, others, added);
+  length_ = sum_of(wide(length_) - wide(others.length));
+  time_ = sum_of(wide(time_) - wide(others.time));
 }
 
 std::vector<std::uint64_t> CellTally::words() const {

@@ -125,6 +125,33 @@ TEST_F(StatisticsRun, APlugFlowHasTheFluxOfItsInlet) {
     EXPECT_TRUE(fs::exists(one / name)) << name;
 }
 
+// Times in cells and ages are counted apart. Those who are there at the end have no age in the summary.
+TEST_F(StatisticsRun, TimesInCellsAreAges) {
+  std::string text = plug_flow_text;
+  text.replace(text.find("2.0, 0.0, 0.0]"), 8, "2.0, 0.3");
+  text += "[contact.patch.ymax]\nresponse = \"absorb\"\n";
+  const Summary summary = run(text, one);
+  double ages = summary.statistics->absorbed_by_edits.sum;
+  std::uint64_t left = 0;
+  for (const LeaveTotals& l : summary.statistics->left) {
+    ages += l.escaped.sum + l.absorbed.sum;
+    left += l.escaped.count + l.absorbed.count;
+  }
+  const auto rows = rows_of(one / "cells.csv");
+  ASSERT_EQ(rows.front(), (std::vector<std::string>{"cell", "x", "y", "z", "track_length", "residence", "visits",
+                                                    "deposition", "concentration"}));
+  double times = 0.0;
+  double deposited = 0.0;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    times += std::stod(rows[i][5]);
+    deposited += std::stod(rows[i][7]);
+  }
+  EXPECT_EQ(deposited, static_cast<double>(summary.totals.absorbed));
+  EXPECT_GT(left, 0U);
+  EXPECT_LE(ages, times * (1.0 + 1e-9));
+  EXPECT_LE(times - ages, static_cast<double>(summary.alive) * summary.statistics->time);
+}
+
 TEST_F(StatisticsRun, TheFilesAreTheSameForAnyThreads) {
   run(statistics_text, one, 1);
   run(statistics_text, two, 3);

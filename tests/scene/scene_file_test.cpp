@@ -452,6 +452,7 @@ hits = true
 residence = true
 crossings = true
 pathlines = { every = 100, ids = [3, 1] }
+cells = { quantities = ["visits", "residence"] }
 [[statistics.plane]]
 name = "outlet-left"
 point = [1.0, 2.0, 3.0]
@@ -469,6 +470,7 @@ normal = [1.0, 0.0, 0.0]
   EXPECT_TRUE(s.statistics.crossings);
   EXPECT_EQ(options.pathlines_every, 100U);
   EXPECT_EQ(options.pathlines_of, (std::vector<std::uint64_t>{3, 1}));
+  EXPECT_EQ(options.cells, (std::vector<std::string>{"visits", "residence"}));
   ASSERT_EQ(options.planes.size(), 2U);
   EXPECT_EQ(options.planes[0].name, "outlet-left");
   EXPECT_EQ(options.planes[0].point, (Vec3{1.0, 2.0, 3.0}));
@@ -485,6 +487,7 @@ TEST(SceneFile, StatisticsThatAreWrongAreRefusedWithTheirLine) {
   expect_error(box + "[statistics]\nhits = 1\n", "4: [statistics]", "true or false");
   expect_error(box + "[statistics]\ncrossings = true\n", "4: [statistics]", "no plane");
   expect_error(box + "[statistics]\npathlines = true\n", "4: [statistics]", "must be a table");
+  expect_error(box + "[statistics]\ncells = { quantities = ['visit'] }\n", "4: [statistics.cells]", "did you mean");
   expect_error(box + "[statistics]\npathlines = {}\n", "4: [statistics.pathlines]", "give every = N");
   expect_error(box + "[statistics]\npathlines = { every = 0 }\n", "4: [statistics.pathlines]", "between 1");
   expect_error(box + "[statistics]\npathlines = { ids = [1, 2.5] }\n", "4: [statistics.pathlines]", "2.5 is in it");

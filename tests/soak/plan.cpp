@@ -200,6 +200,7 @@ StatisticsOptions Plan::statistics() const {
   o.residence = true;
   o.planes = {{"middle", (scene_.low + scene_.high) * 0.5, {1.0, 0.5, 0.0}, 0.0}};
   o.pathlines_every = 3;
+  o.cells = cell_quantities();
   return o;
 }
 

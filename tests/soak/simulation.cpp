@@ -88,6 +88,8 @@ class SimulationMover : public Mover {
       for (const std::uint64_t n : simulation_->statistics().hits.by_patch(environment_)) hits += n;
       std::uint64_t contacts = 0;
       for (const std::uint64_t n : t.contacts_by_patch) contacts += n;
+      const std::optional<CellTally> tally = simulation_->cell_tally();
+      if (tally && !tally->adds_up()) wrong = "sums of cells are not those of particles";
       if (hits != contacts) wrong = fmt::format("{} hits of walls for {} contacts", hits, contacts);
     }
     return wrong;
@@ -95,7 +97,7 @@ class SimulationMover : public Mover {
 
   // Simulations that are made alike, up to the same step.
   [[nodiscard]] std::string compare_with_twins(Seen& seen) const {
-    const std::string hash = simulation_->state_hash().hex();
+    const std::string hash = state_of(*simulation_);
     if (run_twin(nullptr, 3, nullptr) != hash) return "other threads reach another state";
     if (saved_ && run_twin(nullptr, 1, &*saved_) != hash) return "a checkpoint leads to another state";
     if (plan_.collides() || case_[Knob::ranks] == 0) return "";
@@ -137,7 +139,18 @@ class SimulationMover : public Mover {
     plan_.fill(twin, from == nullptr);
     if (from != nullptr) twin.restore(*from);
     while (twin.steps() < simulation_->steps()) twin.step();
-    return twin.state_hash().hex();
+    return state_of(twin);
+  }
+  // With the sums of cells.
+  static std::string state_of(const Simulation& s) {
+    std::uint64_t sums = 0;
+    const std::optional<CellTally> tally = s.cell_tally();
+    if (tally) {
+      CellTally carried = *tally;
+      carried.set_words(tally->words());
+      for (const std::uint64_t word : carried.words()) sums = 31 * sums + word;
+    }
+    return fmt::format("{} {}", s.state_hash().hex(), sums);
   }
 
   const Case& case_;

@@ -291,6 +291,7 @@ hits = true
 residence = true
 crossings = true
 pathlines = { every = 100, ids = [5, 6] }
+cells = { quantities = ["track_length", "residence", "visits", "deposition", "concentration"] }
 [[statistics.plane]]
 name = "middle"
 point = [4.0, 0.0, 0.0]
@@ -350,6 +351,7 @@ hits = true
 residence = true
 crossings = true
 pathlines = { every = 10 }
+cells = { quantities = ["track_length", "residence", "visits", "deposition", "concentration"] }
 [[statistics.plane]]
 name = "middle"
 point = [4.0, 2.5, 2.5]

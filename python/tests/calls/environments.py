@@ -30,6 +30,7 @@ def of_making() -> Calls:
         "Environment.locate: refused": refused(lambda: env.locate([np.nan, 0.0, 0.0])),
         "Environment.cast_rays": lambda: env.cast_rays(x, x), "Environment.cast_rays: cells": lambda: env.cast_rays(
             x, x, 0.5, cells=True),
+        "Environment.cast_rays: lengths": lambda: env.cast_rays(x, x, 0.5, lengths=True),
         "Environment.cast_rays: refused": refused(lambda: env.cast_rays(x, np.zeros_like(x))),
         "Environment.validity": env.validity, "Environment.awaits_advance": lambda: env.awaits_advance(particles),
         "Environment.check_advance": lambda: env.check_advance(particles),
@@ -42,6 +43,25 @@ def of_making() -> Calls:
         "Environment.add_random": lambda: env.add_random(COUNT, seed=3),
         "Environment.restored": lambda: env.restored(states, weights),
         "Environment.restored: refused": refused(lambda: env.restored(broken, weights)),
+    }
+
+
+def of_tallies() -> Calls:
+    env, particles = with_particles()
+    tally, other = dc.CellTally(env), dc.CellTally(environment())
+    env.set_tally(tally)
+    env.advance(particles, particles.positions + [0.1, 0.2, 0.1])
+    cell = int(particles[0].cell)
+    return {
+        "CellTally": lambda: dc.CellTally(env), "CellTally.track_length": tally.track_length,
+        "CellTally.residence": tally.residence, "CellTally.visits": tally.visits, "CellTally.deposited": tally.deposited,
+        "CellTally.path_length": tally.path_length, "CellTally.age": tally.age, "CellTally.adds_up": tally.adds_up,
+        "CellTally.take_back": lambda: tally.take_back(cell, 0.0), "CellTally.deposit": lambda: tally.deposit(cell),
+        "CellTally.take_back: refused": refused(lambda: tally.take_back(99999, 0.0)),
+        "CellTally.deposit: refused": refused(lambda: tally.deposit(99999)),
+        "CellTally.update_after_edit": dc.CellTally(env).update_after_edit, "CellTally.reset": dc.CellTally(env).reset,
+        "Environment.set_tally": lambda: env.set_tally(None), "Environment.set_tally: refused": refused(
+            lambda: env.set_tally(other)),
     }
 
 
@@ -217,4 +237,4 @@ def of_shared() -> Calls:
 
 
 def calls() -> Calls:
-    return of_shared() | of_making() | of_moves() | of_edits() | of_steps()
+    return of_shared() | of_making() | of_tallies() | of_moves() | of_edits() | of_steps()

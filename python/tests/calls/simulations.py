@@ -237,7 +237,7 @@ def of_forces() -> Calls:
 
 def of_statistics() -> Calls:
     plane = dc.records.SectionPlane("middle", [0.5, 0.5, 0.5], [0.0, 0.0, 1.0])
-    options = dc.StatisticsOptions(hits=True, residence=True, pathlines_every=2)
+    options = dc.StatisticsOptions(hits=True, residence=True, pathlines_every=2, cells=["visits"])
     options.planes = [plane]
     before, after = np.random.default_rng(1).uniform(0, 1, (2, 50, 3))
     own = simulation()
@@ -255,6 +255,9 @@ def of_statistics() -> Calls:
             dc.StatisticsOptions(planes=[dc.records.SectionPlane("no name")]))),
         "find_crossings": lambda: dc.records.find_crossings([plane], before, after, threads=1),
         "find_crossings: refused": refused(lambda: dc.records.find_crossings([plane], before, after[1:], threads=1)),
+        "Simulation.cell_arrays": own.cell_arrays, "cell_quantities": dc.records.cell_quantities,
+        "check_cell_quantities": lambda: dc.records.check_cell_quantities(["visits"]),
+        "check_cell_quantities: refused": refused(lambda: dc.records.check_cell_quantities(["visit"])),
         "WallHits": dc.WallHits, "WallHits.add": lambda: dc.WallHits().add(env, report),
         "WallHits.add: refused": refused(lambda: dc.WallHits().add(environment(1), report)),
         "WallHits.update_after_edit": lambda: dc.WallHits().update_after_edit(edited),
