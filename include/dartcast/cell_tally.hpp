@@ -51,7 +51,7 @@ class CellTally {
   /// How often particles have come from another cell.
   [[nodiscard]] std::uint64_t visits(Cell c) const { return of(c).visits; }
 
-  /// Particles that were deposited at its walls: deposit() counts them.
+  /// The particles that deposit() has counted.
   [[nodiscard]] std::uint64_t deposited(Cell c) const { return of(c).deposited; }
 
   // The sums of all particles, which are kept apart.
@@ -62,6 +62,7 @@ class CellTally {
 
   /// Takes time back, in steps: a particle that ends its step in this cell had left before.
   void take_back(Cell c, double time);
+  /// Counts a particle that was deposited at a wall of the cell.
   void deposit(Cell c) { ++of(c).deposited; }
   /// Follows an edit: the sums of cells that it removed go to the cells in their place. These share them by volume: those of
   /// the same source (CombinatorialMap::source()); if there are none, all that the edit has added. If it has added none, its sums are

@@ -34,6 +34,7 @@ from ._core import (
     TurbulenceOptions as TurbulenceOptions, UpdateReport as UpdateReport, VOLUME_COVER as VOLUME_COVER,
     VelocityField as VelocityField, WallHit as WallHit, WallMotion as WallMotion, WallResponse as WallResponse,
     WallResponseKind as WallResponseKind, WallResponses as WallResponses, apply as apply, camera_path as camera_path,
+    cell_quantities as cell_quantities, check_cell_quantities as check_cell_quantities,
     check_threads as check_threads, deformation_kind as deformation_kind, field_samples as field_samples,
     find_crossings as find_crossings, hold_stopped as hold_stopped, kind_of as kind_of, max_threads as max_threads,
     overlapping_clusters as overlapping_clusters)
