@@ -64,10 +64,10 @@ class CellTally {
   void take_back(Cell c, double time);
   /// Counts a particle that was deposited at a wall of the cell.
   void deposit(Cell c) { ++of(c).deposited; }
-  /// Follows an edit: the sums of cells that it removed go to the cells in their place. These share them by volume: those of
-  /// the same source (CombinatorialMap::source()); if there are none, all that the edit has added. If it has added none, its sums are
-  /// given up, and taken from those of all particles. Call it after each edit.
-  /// Cost: the cells touched.
+  /// Follows an edit: the sums of cells that it removed go to the cells in their place. These share them by volume:
+  /// those of the same source (CombinatorialMap::source()); if there are none, all that the edit has added. If it has
+  /// added none, the sums are given up, and taken from those of all particles. Call it after each edit. Cost: the cells
+  /// touched.
   void update_after_edit(const CellComplex& complex, const ComplexEditReport& edit);
 
   /// Begins anew with the complex as it is now, without sums. The unit of lengths stays.
