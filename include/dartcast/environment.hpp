@@ -289,7 +289,8 @@ class Environment {
 
   /// Adds all later steps by advance() to a tally of complex(); null ends this. It must outlive its use, and follow each
   /// edit. advance_in_rounds() with a response refuses to step then. States and reports stay the same bits. If a response
-  /// throws, the tally is as before. Cost: docs/benchmark.md; and where a response may throw, a copy of the tally each step.
+  /// throws, the tally is as before. Cost: a second walk for each step that leaves its simplex; and if a response may
+  /// throw, a copy of the tally.
   void set_tally(CellTally* tally);
   [[nodiscard]] CellTally* tally() const;
 
