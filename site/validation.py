@@ -106,7 +106,7 @@ def turbulence(axis: Any) -> None:
 
 
 def sizes(axis: Any) -> None:
-    d = 1e6 * by_id(run("sizes")[-1], "diameter")
+    d = 1e6 * dc.Simulation(dc.load_scene(SCENES / "sizes.toml")).diameters
     x = np.linspace(1, 20, 400)
     normal = np.vectorize(lambda u: 0.5 * (1 + math.erf(u / math.sqrt(2))))
     lognormal = normal(np.log(x / 5) / np.log(1.8))
