@@ -70,6 +70,8 @@ class CellTally {
   /// touched.
   void update_after_edit(const CellComplex& complex, const ComplexEditReport& edit);
 
+  /// Whether each cell of the complex has a place here. If not, the tally has missed an edit.
+  [[nodiscard]] bool fits(const CellComplex& complex) const;
   /// Begins anew with the complex as it is now, without sums. The unit of lengths stays.
   void reset(const CellComplex& complex);
   /// All sums as words. Those of several tallies of one complex, each word added to its like, are words of their sum.

@@ -288,7 +288,8 @@ class Environment {
                                   const ContactCallback& respond = {}, const StepOptions& options = {}) const;
 
   /// Adds all later steps by advance() to a tally of complex(); null ends this. It must outlive its use, and follow each
-  /// edit. advance_in_rounds() with a response refuses to step then. States and reports stay the same bits. If a response
+  /// edit: advance() throws InvalidArgument if it has no place for a cell. advance_in_rounds() with a response refuses to
+  /// step then. States and reports stay the same bits. If a response
   /// throws, the tally is as before. Cost: a second walk for each step that leaves its simplex; and if a response may
   /// throw, a copy of the tally.
   void set_tally(CellTally* tally);

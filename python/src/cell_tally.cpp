@@ -26,10 +26,15 @@ struct TallyHandle {
   }
 
   [[nodiscard]] Use use() const { return Use(*environment->usage, "the environment"); }
+  void expect_followed() const {
+    if (!tally.fits(environment->environment->complex()))
+      throw InvalidArgument("CellTally: it has missed an edit: call update_after_edit() after each one");
+  }
   // A value for each cell, in the order of CombinatorialMap.cells().
   template <class T, class Get>
   [[nodiscard]] py::array_t<T> of_cells(const Get& get) const {
     const Use in_use = use();
+    expect_followed();
     std::vector<T> values;
     for (const Cell c : environment->environment->map().cells()) values.push_back(get(c));
     return array_of(std::move(values));
@@ -74,6 +79,7 @@ void bind_sums(TallyClass& c) {
 }
 
 void require_cell(const TallyHandle& t, Cell c) {
+  t.expect_followed();
   if (!t.environment->environment->map().contains(c)) throw InvalidArgument("CellTally: the map has no such cell");
 }
 
@@ -81,7 +87,7 @@ void require_cell(const TallyHandle& t, Cell c) {
 
 void bind(py::module_& m) {
   TallyClass c(m, "CellTally", doc("CellTally"));
-  c.def(py::init<std::shared_ptr<EnvironmentHandle>>(), py::arg("environment"),
+  c.def(py::init<std::shared_ptr<EnvironmentHandle>>(), py::arg("environment").none(false),
         about("CellTally::CellTally", "environment: the one whose steps and edits it will follow."));
   bind_sums(c);
   c.def(

@@ -41,6 +41,19 @@ def test_a_tally_may_go_before_its_environment():
     env.advance(particles, [[0.9, 0.5, 0.5]])
 
 
+def test_a_tally_that_has_missed_an_edit_is_not_read():
+    with pytest.raises(TypeError):
+        dartcast.CellTally(None)
+    env = box(2)
+    tally = dartcast.CellTally(env)
+    env.edit(lambda edit: dartcast.topology.subdivide(edit, next(iter(edit.map.cells()))))
+    for call in (tally.visits, tally.track_length, lambda: tally.deposit(next(iter(env.map.cells())))):
+        with pytest.raises(dartcast.InvalidArgument, match="missed an edit"):
+            call()
+    tally.update_after_edit()
+    assert len(tally.visits()) == env.map.cell_count()
+
+
 def test_rays_have_lengths():
     env = box(3)
     x = np.random.default_rng(2).uniform(0.1, 0.9, (50, 3))

@@ -12,6 +12,7 @@
 #include "base/parallel.hpp"
 #include "complex/simplex.hpp"
 #include "complex/steiner_points.hpp"
+#include "dartcast/cell_tally.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_check.hpp"
 #include "dartcast/validity.hpp"
@@ -310,6 +311,9 @@ bool Environment::awaits_advance(const Particles& particles) const {
 void Environment::check_advance(const Particles& particles, const StepOptions& options, const char* caller) const {
   members_->check_edit_followed(particles, caller);
   check(options, caller);
+  if (members_->tally != nullptr && !members_->tally->fits(complex()))
+    throw InvalidArgument(fmt::format(
+        "{}: the tally has missed an edit of its environment: call its update_after_edit() after each edit", caller));
 }
 
 StepReport Environment::advance(Particles& particles, std::span<const Vec3> targets, const ContactCallback& respond,

@@ -88,6 +88,13 @@ void CellTally::fit(const CellComplex& complex) {
   }
 }
 
+bool CellTally::fits(const CellComplex& complex) const {
+  for (std::uint32_t pool = 0; pool < pools_.size(); ++pool) {
+    if (pools_[pool].sums.size() != complex.map().slot_count(pool)) return false;
+  }
+  return true;
+}
+
 CellTally::Sums& CellTally::Sums::operator+=(const Sums& other) {
   add(length, other.length);
   add(time, other.time);
@@ -111,6 +118,7 @@ bool CellTally::adds_up() const {
 void CellTally::take_back(Cell c, double time) {
   if (!(time > 0.0)) return;
   Sums& sums = of(c);
+  time = std::min(time, 0x1p+62);
   const double whole = std::floor(time);
   const Wide asked = wide({detail::tally_units(time - whole) << 2U, static_cast<std::uint64_t>(whole)});
   const Wide rest = std::min(asked, wide(sums.time));

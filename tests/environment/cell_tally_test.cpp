@@ -15,8 +15,10 @@
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/map_edits.hpp"
+#include "dartcast/remeshing.hpp"
 #include "dartcast/response.hpp"
 #include "dartcast/spheres.hpp"
+#include "support/expectations.hpp"
 #include "support/random_vectors.hpp"
 #include "tracking/place_in_simplex.hpp"
 
@@ -242,6 +244,26 @@ TEST(CellTally, SharesSumsOfEditedCells) {
   other.set_words(run.tally.words());
   EXPECT_EQ(other.words(), run.tally.words());
   EXPECT_THROW(other.set_words(std::vector<std::uint64_t>(3)), InvalidArgument);
+}
+
+TEST(CellTally, RefusesStepsAfterAMissedEdit) {
+  Environment environment(box(4), Threads{1});
+  CellTally tally(environment.complex());
+  environment.set_tally(&tally);
+  Particles particles;
+  const Vec3 from{1.5, 1.6, 1.7};
+  environment.add(particles, {&from, 1});
+  environment.edit([&](ComplexEdit& e) { subdivide(e, particles[0].cell); });
+  environment.update_after_edit(particles, OrphanPolicy::relocate);
+  const Vec3 to{2.5, 1.6, 1.7};
+  expect_parts(refusal([&] { environment.advance(particles, {&to, 1}); }), {"advance", "missed an edit"});
+  expect_parts(refusal([&] {
+                 advance_spheres(environment, particles, std::vector<double>{0.1}, {&to, 1}, {});
+               }),
+               {"missed an edit"});
+  tally.update_after_edit(environment.complex(), environment.last_edit());
+  environment.advance(particles, {&to, 1});
+  EXPECT_TRUE(tally.adds_up());
 }
 
 TEST(CellTally, TakesSpheresStraight) {
