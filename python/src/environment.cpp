@@ -107,24 +107,35 @@ Typed<"Location or Records"> locate(const EnvironmentHandle& h, const Typed<"Vec
   return py::cast(found);
 }
 
-Typed<"Records or tuple[Records, NDArray[uint32], NDArray[uint64]]"> cast_rays(const EnvironmentHandle& h,
-                                                                               const Typed<"Points">& origins,
-                                                                               const Typed<"Points">& directions,
-                                                                               double max_distance, bool cells) {
+// Rays, and the cells that they pass if `passed` is given. The lock is held before and after.
+py::array hits_of(const EnvironmentHandle& h, const Typed<"Points">& origins, const Typed<"Points">& directions,
+                  double max_distance, RayCells* passed) {
   const Use use(*h.usage, "the environment");
   const auto starts = vectors(origins, "origins");
   const auto ways = vectors(directions, "directions");
   std::vector<RayHit> hits;
-  RayCells passed;
   {
     const py::gil_scoped_release release;
-    hits = h.environment->cast_rays(starts, ways, max_distance, cells ? &passed : nullptr);
+    hits = h.environment->cast_rays(starts, ways, max_distance, passed);
   }
-  if (!cells) return rows_of(hits);
+  return rows_of(hits);
+}
+
+py::array numbers_of(const std::vector<Cell>& cells) {
   std::vector<std::uint32_t> numbers;
-  numbers.reserve(passed.cells.size());
-  for (const Cell cell : passed.cells) numbers.push_back(cell.value);
-  return py::make_tuple(rows_of(hits), array_of(std::move(numbers)),
+  numbers.reserve(cells.size());
+  for (const Cell cell : cells) numbers.push_back(cell.value);
+  return array_of(std::move(numbers));
+}
+
+Typed<"Records or tuple[Records, NDArray[uint32], NDArray[uint64]]"> cast_rays(const EnvironmentHandle& h,
+                                                                               const Typed<"Points">& origins,
+                                                                               const Typed<"Points">& directions,
+                                                                               double max_distance, bool cells) {
+  RayCells passed;
+  const py::array hits = hits_of(h, origins, directions, max_distance, cells ? &passed : nullptr);
+  if (!cells) return hits;
+  return py::make_tuple(hits, numbers_of(passed.cells),
                         array_of(std::vector<std::uint64_t>(passed.first.begin(), passed.first.end())));
 }
 
@@ -132,19 +143,9 @@ Typed<"tuple[Records, NDArray[uint32], NDArray[uint64], NDArray[float64]]"> cast
     const EnvironmentHandle& h, const Typed<"Points">& origins, const Typed<"Points">& directions, double max_distance,
     bool lengths) {
   if (!lengths) throw InvalidArgument("cast_rays: lengths is False: leave it out");
-  const Use use(*h.usage, "the environment");
-  const auto starts = vectors(origins, "origins");
-  const auto ways = vectors(directions, "directions");
-  std::vector<RayHit> hits;
   RayCells passed;
-  {
-    const py::gil_scoped_release release;
-    hits = h.environment->cast_rays(starts, ways, max_distance, &passed);
-  }
-  std::vector<std::uint32_t> numbers;
-  numbers.reserve(passed.cells.size());
-  for (const Cell cell : passed.cells) numbers.push_back(cell.value);
-  return py::make_tuple(rows_of(hits), array_of(std::move(numbers)),
+  const py::array hits = hits_of(h, origins, directions, max_distance, &passed);
+  return py::make_tuple(hits, numbers_of(passed.cells),
                         array_of(std::vector<std::uint64_t>(passed.first.begin(), passed.first.end())),
                         array_of(std::move(passed.lengths)));
 }
