@@ -192,6 +192,11 @@ class Environment {
   /// InvalidArgument if the particles are of another environment or have missed a move or an edit. Cost: five exact
   /// signs.
   bool add(Particles& particles, SimplexId simplex, const Vec3& position);
+  /// Adds a particle at barycentric coordinates in a simplex: in a positive one at a position there, or as near as
+  /// positions can be. In another it is held, as if the last move had inverted the simplex with the particle in it. In
+  /// the plane the fourth coordinate is not read. Returns false and adds nothing unless the cell is free. Throws
+  /// InvalidArgument if a coordinate is not in [0, 1], and as the other add().
+  bool add_at(Particles& particles, SimplexId simplex, const Weights& weights);
 
   /// Particles with these states, which were saved from an equal environment. They have taken part in the last move and
   /// edit. `weights`: one per state, read if it is held. Throws InvalidArgument, naming the first state that is not
@@ -308,10 +313,14 @@ class Environment {
  private:
   friend class PartEnvironment;
   friend class SimultaneousStepper;
+  friend class SphereTally;
   friend std::unique_ptr<Environment> environment_as_it_is(const MeshData& mesh);
   using MakeDecider = std::function<std::unique_ptr<detail::StepDecider>(const ContactCallback&)>;
   StepReport advance_by(const MakeDecider& make, Particles& particles, std::span<const Vec3> targets,
                         const ContactCallback& respond, const StepOptions& options);
+
+  // Steps of particles with a radius above 0 are not added to the tally, until set_tally().
+  void tally_points(std::span<const double> radii);
 
   struct Members;  // src/environment/environment_members.hpp
   explicit Environment(std::unique_ptr<Members> members);

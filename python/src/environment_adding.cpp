@@ -56,6 +56,11 @@ bool add_to_simplex(const EnvironmentHandle& h, ParticlesHandle& p, SimplexId si
   return h.changeable(remedy).add(p.particles, simplex, position);
 }
 
+bool add_at(const EnvironmentHandle& h, ParticlesHandle& p, SimplexId simplex, const Weights& weights) {
+  const UseBoth use(h, p);
+  return h.changeable(remedy).add_at(p.particles, simplex, weights);
+}
+
 ParticlesPointer added_random(const EnvironmentHandle& h, std::size_t count, std::uint64_t seed) {
   auto made = std::make_shared<ParticlesHandle>();
   const UseBoth use(h, *made);
@@ -88,6 +93,8 @@ void bind(EnvironmentClass& c) {
               "indices that these have in the set, uint32 (m,). Warns where more than half of them do not. locate() "
               "says where each position is."));
   c.def("add", &add_to_simplex, py::arg("particles"), py::arg("simplex"), py::arg("position"));
+  c.def("add_at", &add_at, py::arg("particles"), py::arg("simplex"), py::arg("weights"),
+        about("Environment::add_at", "weights: four floats."));
   c.def("add", &add_new, py::arg("positions"), "Adds to a new set: returns the set, and which positions were added.");
   c.def("add_random", &added_random, py::arg("count"), py::arg("seed") = 1, about("add_random", "Returns a new set."));
   c.def("restored", &restored, py::arg("states"), py::arg("weights") = py::none(),

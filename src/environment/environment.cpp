@@ -144,6 +144,18 @@ void Environment::Members::add_to(Particles& particles, SimplexId simplex, const
   details.cache.add(complex, simplex, position);
 }
 
+void Environment::Members::add_at(Particles& particles, SimplexId simplex, const Weights& weights) const {
+  const Corners corners = complex.corners(simplex);
+  if (volume_sign(corners) == Sign::positive) {
+    const SimplexPlacement placed = detail::carried(complex, simplex, weights);
+    return add_to(particles, placed.simplex, placed.position);
+  }
+  const Vec3 place = flushed(detail::combine(corners, weights));
+  add_to(particles, simplex, is_particle_position(complex.map(), place) ? place : Vec3{});
+  particles.states_.back().held = true;
+  particles.details().weights.back() = weights;
+}
+
 void Environment::Members::check_positions(std::span<const Vec3> positions) const {
   if (positions.size() != complex.point_count())
     throw InvalidArgument(fmt::format("move: {} positions for {} points", positions.size(), complex.point_count()));
@@ -246,6 +258,16 @@ bool Environment::add(Particles& particles, SimplexId simplex, const Vec3& posit
   return true;
 }
 
+bool Environment::add_at(Particles& particles, SimplexId simplex, const Weights& weights) {
+  members_->check_current(particles);
+  if (!are_weights(weights)) throw InvalidArgument("add_at: coordinates must be finite and at least 0");
+  if (!names_simplex(map(), simplex) || !map().is_free(simplex.cell)) return false;
+  Addition addition(particles);
+  members_->add_at(particles, simplex, weights);
+  addition.keep();
+  return true;
+}
+
 Particles Environment::restored(std::span<const ParticleState> states, std::span<const Weights> weights) const {
   if (weights.size() != states.size()) throw InvalidArgument("restored: one set of weights per state is needed");
   for (std::size_t i = 0; i < states.size(); ++i) {
@@ -311,7 +333,7 @@ bool Environment::awaits_advance(const Particles& particles) const {
 void Environment::check_advance(const Particles& particles, const StepOptions& options, const char* caller) const {
   members_->check_edit_followed(particles, caller);
   check(options, caller);
-  if (members_->tally != nullptr && !members_->tally->fits(complex()))
+  if (tally() != nullptr && !tally()->fits(complex()))
     throw InvalidArgument(fmt::format(
         "{}: the tally has missed an edit of its environment: call its update_after_edit() after each edit", caller));
 }
@@ -330,7 +352,7 @@ StepReport Environment::advance_by(const MakeDecider& make, Particles& particles
     const std::unique_ptr<detail::StepDecider> decider = make ? make(answer) : nullptr;
     return members_->advance(particles, targets,
                              detail::BatchStepper(complex(), awaits_advance(particles), threads(), options, answer,
-                                                  may_throw, decider.get(), members_->tally));
+                                                  may_throw, decider.get(), members_->tallied));
   };
   return members_->watched(*this, particles, targets, options, respond, take, static_cast<bool>(make));
 }
@@ -339,7 +361,7 @@ StepReport Environment::advance_in_rounds(Particles& particles, std::span<const 
                                           const RoundCallback& respond, const StepOptions& options) {
   check_advance(particles, options, "advance_in_rounds");
   if (!respond) return advance(particles, targets, {}, options);
-  if (members_->tally != nullptr)
+  if (tally() != nullptr)
     throw InvalidArgument("advance_in_rounds: steps in rounds are not added to tallies: use advance()");
   const auto take = [&](const RoundCallback& answer) {
     return members_->advance(particles, targets,
@@ -351,8 +373,9 @@ StepReport Environment::advance_in_rounds(Particles& particles, std::span<const 
 void Environment::set_replay_hook(ReplayHook hook) { members_->replay_hook = std::move(hook); }
 const ReplayHook& Environment::replay_hook() const { return members_->replay_hook; }
 
-void Environment::set_tally(CellTally* tally) { members_->tally = tally; }
-CellTally* Environment::tally() const { return members_->tally; }
+void Environment::set_tally(CellTally* tally) { members_->tallied = {tally, {}}; }
+CellTally* Environment::tally() const { return members_->tallied.tally; }
+void Environment::tally_points(std::span<const double> radii) { members_->tallied.radii = radii; }
 
 // Repairs would turn the corners of cells that look inside out.
 std::unique_ptr<Environment> environment_as_it_is(const MeshData& mesh) {

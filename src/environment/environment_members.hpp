@@ -10,6 +10,7 @@
 #include "dartcast/complex_edit.hpp"
 #include "dartcast/environment.hpp"
 #include "tracking/locate.hpp"
+#include "tracking/tallied.hpp"
 
 namespace dartcast::detail {
 class BatchStepper;
@@ -34,6 +35,7 @@ struct Environment::Members {
   void check_positions(std::span<const Vec3> positions) const;
   [[nodiscard]] std::vector<Vec3> with_steiner_points(std::span<const Vec3> positions) const;
   void add_to(Particles& particles, SimplexId simplex, const Vec3& position) const;
+  void add_at(Particles& particles, SimplexId simplex, const Weights& weights) const;
   /// Precondition: check_advance() passes.
   StepReport advance(Particles& particles, std::span<const Vec3> targets, const detail::BatchStepper& stepper) const;
 
@@ -50,7 +52,7 @@ struct Environment::Members {
   std::uint64_t moves_at_edit = 0;  ///< when the last edit was made
   ComplexEditReport last_edit;
   ReplayHook replay_hook;
-  CellTally* tally = nullptr;
+  detail::Tallied tallied;
   std::unique_ptr<Locator> locator;  ///< of the current positions, made by the first locate()
 };
 

@@ -17,14 +17,10 @@ void add_random(Environment& environment, Particles& particles, std::size_t coun
   Addition addition(particles);
   for (std::size_t i = 0; i < count; ++i) {
     KeyedRandom random(seed, RandomPurpose::place, particles.size());
-    for (int tries = 0;; ++tries) {
-      if (tries == max_tries) {
-        throw InvalidArgument(
-            "add_random: random points fall outside the free cells again and again: their cells are too thin or not "
-            "valid");
-      }
-      const std::optional<Sample> s = sampler.sample(environment.complex(), random);
-      if (s && environment.add(particles, s->simplex, flushed(s->position))) break;
+    for (int tries = 1;; ++tries) {
+      const Sample s = *sampler.sample(environment.complex(), random);
+      if (environment.add(particles, s.simplex, flushed(s.position))) break;
+      if (tries == max_tries && environment.add_at(particles, s.simplex, s.weights)) break;
     }
   }
   addition.keep();

@@ -210,8 +210,8 @@ std::optional<Sample> VolumeSampler::sample(const CellComplex& complex, KeyedRan
     up_to.push_back(sum += scale_(simplex_volume(complex, cell, s)));
   const SimplexId simplex{cell, static_cast<std::uint16_t>(entry_above(up_to, place))};
   const Corners v = complex.corners(simplex);
-  if (plane) return Sample{simplex, (v[0] * w[0] + v[1] * w[1]) + v[2] * w[2]};
-  return Sample{simplex, (v[0] * w[0] + v[1] * w[1]) + (v[2] * w[2] + v[3] * w[3])};
+  if (plane) return Sample{simplex, (v[0] * w[0] + v[1] * w[1]) + v[2] * w[2], w};
+  return Sample{simplex, (v[0] * w[0] + v[1] * w[1]) + (v[2] * w[2] + v[3] * w[3]), w};
 }
 
 namespace {
@@ -357,14 +357,18 @@ std::optional<Sample> PatchSampler::sample(const CellComplex& complex, KeyedRand
   const Triangle& t = triangles_[*entry];
   const Corners v = complex.corners(t.simplex);
   const Vec3 on_face = on_facet(dimension, v, t.facet, w);
-  return Sample{t.simplex, on_face + (v[t.facet] - on_face) * 0x1p-6};
+  constexpr double inwards = 0x1p-6;
+  Weights weights{};
+  weights[t.facet] = inwards;
+  for (unsigned k = 0; k < dimension; ++k) weights[corner_of(dimension, t.facet, k)] = w[k] * (1.0 - inwards);
+  return Sample{t.simplex, on_face + (v[t.facet] - on_face) * inwards, weights};
 }
 
 // Nothing is drawn again: the position is exact.
 PointSampler::PointSampler(Environment& environment, const Vec3& at, const std::optional<SampledPart>& part) {
   const Location found = environment.locate(flushed(at));
   const bool own = found.place == Place::free && (!part || part->cells.is_own(found.simplex.cell));
-  if (own) sample_ = Sample{found.simplex, flushed(at)};
+  if (own) sample_ = Sample{found.simplex, flushed(at), {}};
   std::uint64_t count = own ? 1 : 0;
   if (part) part->ranks.sum({&count, 1});
   empty_ = count == 0;
@@ -392,7 +396,8 @@ std::vector<std::uint64_t> of_all_ranks(const std::vector<std::uint64_t>& ids, R
 }  // namespace
 
 // Sampled points are rounded. One that fell out of its simplex is drawn again, with the next numbers of the same id. If
-// ranks have an environment's parts, all draw for each particle, and the one whose cell it is adds it.
+// ranks have an environment's parts, all draw for each particle, and the one whose cell it is adds it. Where the last of
+// all tries fails, the cells are inverted or too thin: particles wait there as they wait in any such cell.
 template <class Sampler>
 std::vector<std::uint64_t> place(const Placing& placing, Particles& particles, const Sampler& sampler,
                                  std::uint64_t first, std::uint64_t count) {
@@ -404,16 +409,14 @@ std::vector<std::uint64_t> place(const Placing& placing, Particles& particles, c
       waiting.push_back({id, KeyedRandom(placing.seed, RandomPurpose::place, id)});
   }
   std::vector<std::uint64_t> placed;
-  for (int tries = 0; !waiting.empty(); ++tries) {
-    if (tries == max_tries)
-      throw InvalidArgument(
-          "simulation: random points fall outside the free cells again and again: their cells are too thin or not "
-          "valid");
+  for (int tries = 1; !waiting.empty(); ++tries) {
     std::vector<std::uint64_t> failed;
     for (Waiting& w : waiting) {
       const std::optional<Sample> s = sampler.sample(environment.complex(), w.random);
       if (!s) continue;
-      (environment.add(particles, s->simplex, flushed(s->position)) ? placed : failed).push_back(w.id);
+      const bool added = environment.add(particles, s->simplex, flushed(s->position)) ||
+                         (tries == max_tries && environment.add_at(particles, s->simplex, s->weights));
+      (added ? placed : failed).push_back(w.id);
     }
     if (placing.part) failed = of_all_ranks(failed, placing.part->ranks);
     std::erase_if(waiting, [&](const Waiting& w) { return !std::binary_search(failed.begin(), failed.end(), w.id); });

@@ -25,10 +25,12 @@ inline constexpr std::uint64_t most_at_once = std::uint64_t{1} << 31U;
 /// Throws InvalidArgument if the count is beyond it.
 void check_count(std::size_t count);
 
-/// A point, and the simplex that it lies in up to rounding: to be added exactly, and drawn again if that fails.
+/// A point, and the simplex that it lies in up to rounding: to be added exactly, and drawn again if that fails. The
+/// weights are for a simplex that holds no such point.
 struct Sample {
   SimplexId simplex;
   Vec3 position;
+  Weights weights;
 };
 
 /// Sums of sizes in fixed point. The power of 2 depends on the largest size and their number alone. So the sums do not
@@ -150,7 +152,7 @@ struct Placing {
 };
 
 /// Adds those of these particles that are this rank's. Returns their ids: those that came late stand behind the others.
-/// Throws InvalidArgument if points fall outside again and again. Collective if there is a part.
+/// Where points fall outside again and again, as in an inverted cell, the last is added by its weights. Collective if there is a part.
 template <class Sampler>
 std::vector<std::uint64_t> place(const Placing& placing, Particles& particles, const Sampler& sampler,
                                  std::uint64_t first, std::uint64_t count);

@@ -91,6 +91,56 @@ struct SphereStepper::Buffers {
   }
 };
 
+// The steps of spheres are not added to a tally walk by walk: each counts as a straight way (dartcast/cell_tally.hpp).
+// Those of points are added by the environment, in the first round.
+class SphereTally {
+ public:
+  SphereTally(Environment& environment, const Particles& particles, std::span<const double> radii,
+              const ContactCallback& respond, const StepOptions& options)
+      : environment_(environment), tally_(environment.tally()), radii_(radii), options_(options) {
+    if (tally_ == nullptr) return;
+    before_ = particles;
+    moved_ = environment.awaits_advance(particles);
+    if (respond) former_ = *tally_;
+    environment.tally_points(radii);
+  }
+  SphereTally(const SphereTally&) = delete;
+  SphereTally& operator=(const SphereTally&) = delete;
+  ~SphereTally() {
+    if (tally_ != nullptr) environment_.set_tally(tally_);
+  }
+
+  void end_first_round() const { environment_.set_tally(nullptr); }
+
+  void add_spheres(const Particles& after, const ContactList& list) const {
+    if (tally_ == nullptr) return;
+    const ContactCallback none;
+    const Stepper stepper(environment_.complex(), moved_, options_, none);
+    detail::TallyWriter writer(*tally_);
+    CentreContacts contacts(list);
+    for (std::uint32_t i = 0; i < after.size(); ++i) {
+      if (radii_[i] == 0.0) continue;
+      const Contact* const met = contacts.of(i).contact;
+      stepper.tally_straight(before_[i], before_.held_weights(i), after[i], met != nullptr ? met->time_of_impact : 1.0,
+                             writer);
+    }
+  }
+
+  /// A response has thrown.
+  void restore() const {
+    if (former_) *tally_ = *former_;
+  }
+
+ private:
+  Environment& environment_;
+  CellTally* tally_;
+  std::span<const double> radii_;
+  const StepOptions& options_;
+  Particles before_;
+  std::optional<CellTally> former_;
+  bool moved_ = false;
+};
+
 namespace {
 
 // One call of advance(), in order:
@@ -108,7 +158,7 @@ class SphereCall {
  public:
   SphereCall(Buffers& b, Environment& environment, Particles& particles, std::span<const double> radii,
              std::span<const Vec3> targets, const ContactCallback& respond, const StepOptions& options,
-             std::span<const double> clearances)
+             std::span<const double> clearances, const SphereTally& tally)
       : b_(b),
         environment_(environment),
         particles_(particles),
@@ -117,16 +167,19 @@ class SphereCall {
         clearances_(clearances),
         respond_(respond),
         options_(options),
+        tally_(tally),
         scene_{&environment.complex(), environment.awaits_advance(particles), &respond_, &options_} {}
 
   SphereReport run() {
     plan_all();
     StepReport first = advance_all();
+    tally_.end_first_round();
     start_runs(first);
     if (b_.run_count > 0) land(particles_, b_.active);
     while (!b_.active.empty()) next_round(first.counters);
     SphereReport report;
     merge(first, report);
+    tally_.add_spheres(particles_, report.step.contacts);
     return report;
   }
 
@@ -296,50 +349,8 @@ class SphereCall {
   std::span<const double> clearances_;
   const ContactCallback& respond_;
   const StepOptions& options_;
+  const SphereTally& tally_;
   SphereScene scene_;
-};
-
-}  // namespace
-
-namespace {
-
-// The steps of spheres are not added to a tally walk by walk: each counts as a straight way (dartcast/cell_tally.hpp).
-class StraightTally {
- public:
-  StraightTally(Environment& environment, const Particles& particles, const StepOptions& options)
-      : environment_(environment), tally_(environment.tally()), options_(options) {
-    if (tally_ == nullptr) return;
-    before_ = particles;
-    moved_ = environment.awaits_advance(particles);
-    environment.set_tally(nullptr);
-  }
-  StraightTally(const StraightTally&) = delete;
-  StraightTally& operator=(const StraightTally&) = delete;
-  ~StraightTally() {
-    if (tally_ != nullptr) environment_.set_tally(tally_);
-  }
-
-  void add(const Particles& after, const ContactList& list) const {
-    if (tally_ == nullptr) return;
-    const ContactCallback none;
-    const Stepper stepper(environment_.complex(), moved_, options_, none);
-    detail::TallyWriter writer(*tally_);
-    const std::vector<Contact>& contacts = list.contacts;
-    std::size_t next = 0;
-    for (std::size_t i = 0; i < after.size(); ++i) {
-      while (next < contacts.size() && contacts[next].particle < i) ++next;
-      const bool met = next < contacts.size() && contacts[next].particle == i;
-      stepper.tally_straight(before_[i], before_.held_weights(i), after[i], met ? contacts[next].time_of_impact : 1.0,
-                             writer);
-    }
-  }
-
- private:
-  Environment& environment_;
-  CellTally* tally_;
-  const StepOptions& options_;
-  Particles before_;
-  bool moved_ = false;
 };
 
 }  // namespace
@@ -357,19 +368,15 @@ SphereReport SphereStepper::advance(Environment& environment, Particles& particl
   const bool points_only = std::all_of(radii.begin(), radii.end(), [](double r) { return r == 0.0; });
   if (points_only) return {environment.advance(particles, targets, respond, options), {}};
   if (!buffers_) buffers_ = std::make_unique<Buffers>();
-  SphereCall call(*buffers_, environment, particles, radii, targets, respond, options, clearances);
-  const StraightTally tally(environment, particles, options);
-  const auto run = [&] {
-    SphereReport report = call.run();
-    tally.add(particles, report.step.contacts);
-    return report;
-  };
-  if (!respond) return run();
+  const SphereTally tally(environment, particles, radii, respond, options);
+  SphereCall call(*buffers_, environment, particles, radii, targets, respond, options, clearances, tally);
+  if (!respond) return call.run();
   const Particles before = particles;  // a response is the caller's code: it may throw
   try {
-    return run();
+    return call.run();
   } catch (...) {
     particles = before;
+    tally.restore();
     throw;
   }
 }

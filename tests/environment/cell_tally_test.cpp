@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <stdexcept>
 
 #include "base/random.hpp"
 #include "dartcast/cell_complex.hpp"
@@ -280,6 +281,44 @@ TEST(CellTally, TakesSpheresStraight) {
   EXPECT_EQ(tally.age(), 2.0);
   EXPECT_NEAR(tally.path_length(), norm(particles[0].position - from[0]) + norm(particles[1].position - from[1]),
               1e-12);
+}
+
+// A point is counted alike if it is alone and beside spheres. A response that throws leaves the tally as it was.
+TEST(CellTally, CountsPointsBesideSpheresByTheirWalks) {
+  const auto words = [](std::vector<Vec3> from, std::vector<Vec3> to, const std::vector<double>& radii) {
+    Environment environment(box(4), Threads{1});
+    CellTally tally(environment.complex());
+    environment.set_tally(&tally);
+    Particles particles;
+    environment.add(particles, from);
+    const ContactCallback back = [](const Contact& c, std::span<const WallHit>, std::span<const WallHit>) {
+      return AfterContact{c.unused * -0.5};
+    };
+    advance_spheres(environment, particles, radii, to, back);
+    const std::vector<std::uint64_t> counted = tally.words();
+    unsigned calls = 0;
+    const ContactCallback bad = [&](const Contact& c, std::span<const WallHit>, std::span<const WallHit>) {
+      if (++calls == radii.size()) throw std::runtime_error("user");
+      return AfterContact{c.unused * -0.5};
+    };
+    for (Vec3& x : to) x = {2, 2, 9};
+    EXPECT_THROW(advance_spheres(environment, particles, radii, to, bad), std::runtime_error);
+    EXPECT_EQ(tally.words(), counted);
+    return counted;
+  };
+  const Vec3 point{1.7, 1.6, 2.4};
+  const Vec3 sphere{1.5, 2.2, 2.3};
+  const Vec3 to{1.7, 1.6, 9.0};
+  const std::vector<std::uint64_t> together = words({point, sphere}, {to, to}, {0.0, 0.125});
+  const std::vector<std::uint64_t> of_point = words({point}, {to}, {0.0});
+  const std::vector<std::uint64_t> of_sphere = words({sphere}, {to}, {0.125});
+  EXPECT_NE(of_point, of_sphere);
+  Environment environment(box(4), Threads{1});
+  CellTally sum(environment.complex());
+  std::vector<std::uint64_t> added = of_point;
+  for (std::size_t i = 0; i < added.size(); ++i) added[i] += of_sphere[i];
+  sum.set_words(added);
+  EXPECT_EQ(sum.words(), together);
 }
 
 TEST(CellTally, TakesBackTheTimeAfterLeaving) {

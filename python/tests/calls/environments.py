@@ -40,6 +40,7 @@ def of_making() -> Calls:
             dc.Particles(), state.at(), state.position),
         "Environment.add: set": lambda: env.add(dc.Particles(), x),
         "Environment.add: refused": refused(lambda: env.add(particles, np.zeros((3, 2)))),
+        "Environment.add_at": lambda: env.add_at(dc.Particles(), state.at(), [0.25] * 4),
         "Environment.add_random": lambda: env.add_random(COUNT, seed=3),
         "Environment.restored": lambda: env.restored(states, weights),
         "Environment.restored: refused": refused(lambda: env.restored(broken, weights)),

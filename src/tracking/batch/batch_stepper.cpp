@@ -113,11 +113,11 @@ BatchScene BatchStepper::scene_of(ParticleCache& cache, std::size_t count) const
 
 StepReport BatchStepper::step_all(const BatchParticles& particles, std::span<const Vec3> targets) const {
   BatchScene scene = scene_of(particles.cache, targets.size());
-  scene.stops = !stepper_.responds() && rounds_ == nullptr && decider_ == nullptr && tally_ == nullptr;
+  scene.stops = !stepper_.responds() && rounds_ == nullptr && decider_ == nullptr && tallied_.tally == nullptr;
   std::vector<ChunkSteps> chunks(chunk_count(targets.size(), chunk));
   parallel_for(targets.size(), chunk, threads_, [&](std::size_t begin, std::size_t end) {
     ChunkSteps& steps = chunks[begin / chunk];
-    if (tally_ != nullptr)
+    if (tallied_.tally != nullptr)
       step_chunk<true>(scene, particles, targets, begin, end, steps);
     else
       step_chunk<false>(scene, particles, targets, begin, end, steps);
@@ -137,14 +137,14 @@ StepReport BatchStepper::advance(const BatchParticles& particles, std::span<cons
   const std::vector<ParticleState> states(particles.states.begin(), particles.states.end());
   const std::vector<Weights> weights(particles.weights.begin(), particles.weights.end());
   const ParticleCache cache = particles.cache;
-  const std::optional<CellTally> tally = tally_ != nullptr ? std::optional(*tally_) : std::nullopt;
+  const std::optional<CellTally> tally = tallied_.tally != nullptr ? std::optional(*tallied_.tally) : std::nullopt;
   try {
     return step_all(particles, targets);
   } catch (...) {
     std::copy(states.begin(), states.end(), particles.states.begin());
     std::copy(weights.begin(), weights.end(), particles.weights.begin());
     particles.cache = cache;
-    if (tally) *tally_ = *tally;
+    if (tally) *tallied_.tally = *tally;
     throw;
   }
 }

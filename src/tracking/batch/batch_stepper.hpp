@@ -17,10 +17,7 @@
 #include "tracking/batch/step_decider.hpp"
 #include "tracking/batch/travelling_step.hpp"
 #include "tracking/step.hpp"
-
-namespace dartcast {
-class CellTally;  // dartcast/cell_tally.hpp
-}
+#include "tracking/tallied.hpp"
 
 namespace dartcast::detail {
 
@@ -73,17 +70,17 @@ ChunkSteps joined(std::vector<ChunkSteps> chunks);
 class BatchStepper {
  public:
   /// `moved`: as for Stepper. `may_throw`: whether `respond` may. `decider`: takes the steps that may meet a wall; none:
-  /// Stepper does. `tally`: the steps are added to it. The references must outlive the stepper.
+  /// Stepper does. The references must outlive the stepper.
   BatchStepper(const CellComplex& complex, bool moved, Threads threads, const StepOptions& options,
                const ContactCallback& respond, bool may_throw, const StepDecider* decider = nullptr,
-               CellTally* tally = nullptr)
+               const Tallied& tallied = {})
       : complex_(complex),
         moved_(moved),
         threads_(threads),
         options_(options),
         may_throw_(may_throw),
         decider_(decider),
-        tally_(tally),
+        tallied_(tallied),
         stepper_(complex, moved, options, respond) {}
   /// With a response in rounds, which is not empty.
   BatchStepper(const CellComplex& complex, bool moved, Threads threads, const StepOptions& options,
@@ -133,7 +130,7 @@ class BatchStepper {
   const StepOptions& options_;
   bool may_throw_;
   const StepDecider* decider_ = nullptr;
-  CellTally* tally_ = nullptr;
+  Tallied tallied_;
   const RoundCallback* rounds_ = nullptr;  // none: the stepper responds at each contact
   Stepper stepper_;
 };

@@ -54,7 +54,7 @@ void BatchStepper::step_chunk(const BatchScene& scene, const BatchParticles& par
                          std::span(status).first(size),
                          partial};
   std::conditional_t<tallied, ChunkTally, NoTally> tally;
-  if constexpr (tallied) tally.begin(*tally_, states, particles.weights.subspan(begin, size));
+  if constexpr (tallied) tally.begin(tallied_, states, particles.weights.subspan(begin, size), begin);
   if (complex_.map().dimension() == 2)
     step_plane(scene, batch, report.counters);
   else
@@ -66,17 +66,22 @@ void BatchStepper::step_chunk(const BatchScene& scene, const BatchParticles& par
     StepState& step = status[i] == step_untouched ? partial.emplace_back() : partial[status[i]];
     step.begin(static_cast<std::uint32_t>(begin + i), states[i], targets[i], report.contacts);
     const SteppedParticle particle{states[i], particles.weights[begin + i], report.contacts, report.counters};
+    if constexpr (tallied) {
+      if (decider_ == nullptr && tally.counts(i)) {
+        stepper_.run_tallied(step, particle, tally.writer());
+        add(particles, step, steps);
+        continue;
+      }
+    }
     if (decider_ != nullptr)
       take(takers[i], step, particle);
-    else if constexpr (tallied)
-      stepper_.run_tallied(step, particle, tally.writer());
     else if (rounds_ != nullptr)
       stepper_.run_to_contact(step, particle);
     else
       stepper_.run(step, particle);
     add(particles, step, steps);
   }
-  if constexpr (tallied) tally.add(stepper_, batch, moved_, decider_ != nullptr, report.contacts.contacts, begin);
+  if constexpr (tallied) tally.add(stepper_, batch, moved_, decider_ != nullptr, report.contacts.contacts);
 }
 
 }  // namespace dartcast::detail

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "tracking/batch/batch.hpp"
+#include "tracking/batch/batch_stepper.hpp"
 #include "tracking/step.hpp"
 #include "tracking/tally_writer.hpp"
 
@@ -13,20 +13,26 @@ namespace dartcast::detail {
 
 class ChunkTally {
  public:
-  /// Before the steps.
-  void begin(CellTally& tally, std::span<const ParticleState> states, std::span<const Weights> weights) {
-    writer_.emplace(tally);
+  /// Before the steps, of particles that are numbered from `first` on.
+  void begin(const Tallied& tallied, std::span<const ParticleState> states, std::span<const Weights> weights,
+             std::size_t first) {
+    writer_.emplace(*tallied.tally);
+    radii_ = tallied.radii;
+    first_ = first;
     before_.assign(states.begin(), states.end());
     held_.assign(weights.begin(), weights.end());
   }
+  /// Whether the chunk's step i is added.
+  [[nodiscard]] bool counts(std::size_t i) const { return radii_.empty() || radii_[first_ + i] == 0.0; }
   /// For the steps that Stepper takes.
   [[nodiscard]] TallyWriter& writer() { return *writer_; }
 
-  /// After the steps. `contacts`: theirs, of particles that are numbered from `first` on.
-  void add(const Stepper& stepper, const BatchSteps& steps, bool moved, bool decided, std::span<const Contact> contacts,
-           std::size_t first) {
+  /// After the steps. `contacts`: theirs.
+  void add(const Stepper& stepper, const BatchSteps& steps, bool moved, bool decided,
+           std::span<const Contact> contacts) {
     std::size_t next = 0;
     for (std::size_t i = 0; i < before_.size(); ++i) {
+      if (!counts(i)) continue;
       const ParticleState& before = before_[i];
       const ParticleState& after = steps.states[i];
       if (steps.status[i] == step_complete) {
@@ -35,8 +41,8 @@ class ChunkTally {
         else
           stepper.tally_arrived(before, after, *writer_);
       } else if (decided) {
-        while (next < contacts.size() && contacts[next].particle < first + i) ++next;
-        const bool met = next < contacts.size() && contacts[next].particle == first + i;
+        while (next < contacts.size() && contacts[next].particle < first_ + i) ++next;
+        const bool met = next < contacts.size() && contacts[next].particle == first_ + i;
         stepper.tally_straight(before, held_[i], after, met ? contacts[next].time_of_impact : 1.0, *writer_);
       }
     }
@@ -46,6 +52,8 @@ class ChunkTally {
   std::optional<TallyWriter> writer_;
   std::vector<ParticleState> before_;
   std::vector<Weights> held_;
+  std::span<const double> radii_;
+  std::size_t first_ = 0;  // particle of the chunk
 };
 
 }  // namespace dartcast::detail
