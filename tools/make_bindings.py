@@ -21,7 +21,7 @@ WORDS = [(r"\bThrows\b", "Raises"), (r"\bthrows\b", "raises"), (r"(\w)::(?=\w)",
          (r"\bstd\.", ""), (r"\bdartcast/(\w+)\.hpp", r"\1.hpp")]
 # Structs that are no records in Python: rows of arrays, numbers, tuples, and classes that python/src binds.
 BY_HAND = set("""
-    AddResult BodiesCheckpoint CatheterCheckpoint Cell CellFace CellHandle ContactList Dart DataArray FaceHits
+    AddResult BodiesCheckpoint CatheterCheckpoint Cell CellFace CellHandle ContactList Dart DataArray Drops FaceHits
     HeldParticle Id ImplicitSimplex LawParticles LawResult LawSamples LeftParticle MeshData MeshFile MeshPart OrphanedParticle Patch PathPoint
     PlaneCrossing PlanePassage RayCells RayHit ReplayResult SimplexId SolidAudit SolidCheckpoint SolidContact
     SolidMesh SolidPlacement SolidStep SphereOverlap SphereReport Stars Statistics SteinerPoints StepReplay
@@ -50,10 +50,10 @@ ROWS = {
     "SphereOverlap": f"particle {FACE} depth left point normal",
     "SolidContact": f"solid kind count wall_kind vertices weights {FACE} triangle dart:dart.number patch time_of_impact gap "
                     "point wall_point normal displacement wall_displacement",
-    "FaceHits": f"{FACE} patch hits",
+    "FaceHits": f"{FACE} patch hits mass energy angles",
     "PlaneCrossing": "plane particle forward share point",
     "PlanePassage": "plane:crossing.plane particle:crossing.particle forward:crossing.forward share:crossing.share "
-                    "point:crossing.point id time age",
+                    "point:crossing.point id time age number",
     "PathPoint": "id time position velocity contact",
     "SimplexId": "cell simplex",
     "SurfacePlace": "cell:triangle.cell simplex:triangle.simplex weights",

@@ -62,8 +62,8 @@ class CellTally {
 
   /// Takes time back, in steps: a particle that ends its step in this cell had left before.
   void take_back(Cell c, double time);
-  /// Counts a particle that was deposited at a wall of the cell.
-  void deposit(Cell c) { ++of(c).deposited; }
+  /// Counts particles that were deposited at a wall of the cell.
+  void deposit(Cell c, std::uint64_t number = 1) { of(c).deposited += number; }
   /// Follows an edit: the sums of cells that it removed go to the cells in their place. These share them by volume:
   /// those of the same source (CombinatorialMap::source()); if there are none, all that the edit has added. If it has
   /// added none, the sums are given up, and taken from those of all particles. Call it after each edit. Cost: the cells

@@ -23,7 +23,8 @@ namespace dartcast {
 
 namespace detail {
 class StepDecider;
-}
+struct Tallied;
+}  // namespace detail
 
 class CellComplex;         // dartcast/cell_complex.hpp
 class CellTally;           // dartcast/cell_tally.hpp
@@ -293,11 +294,12 @@ class Environment {
                                   const ContactCallback& respond = {}, const StepOptions& options = {}) const;
 
   /// Adds all later steps by advance() to a tally of complex(); null ends this. It must outlive its use, and follow each
-  /// edit: advance() throws InvalidArgument if it has no place for a cell. advance_in_rounds() with a response refuses to
+  /// edit: advance() throws InvalidArgument if it has no place for a cell. `numbers`: how often each particle's step is added,
+  /// below 2^32, read in each advance(); empty: once. advance() throws for another number of particles. advance_in_rounds() with a response refuses to
   /// step then. States and reports stay the same bits. If a response
   /// throws, the tally is as before. Cost: a second walk for each step that leaves its simplex; and if a response may
   /// throw, a copy of the tally.
-  void set_tally(CellTally* tally);
+  void set_tally(CellTally* tally, std::span<const std::uint64_t> numbers = {});
   [[nodiscard]] CellTally* tally() const;
 
   /// Checks every simplex of the scene; exact, parallel, streaming.
@@ -319,8 +321,7 @@ class Environment {
   StepReport advance_by(const MakeDecider& make, Particles& particles, std::span<const Vec3> targets,
                         const ContactCallback& respond, const StepOptions& options);
 
-  // Steps of particles with a radius above 0 are not added to the tally, until set_tally().
-  void tally_points(std::span<const double> radii);
+  detail::Tallied set_tallied(const detail::Tallied& tallied);  // returns the former one
 
   struct Members;  // src/environment/environment_members.hpp
   explicit Environment(std::unique_ptr<Members> members);

@@ -33,10 +33,11 @@ enum class Force : std::uint8_t {
 
 /// The medium around the particles, SI units.
 struct Fluid {
-  double density = 0.0;         ///< kg / m^3, 0: of no effect
-  double viscosity = 0.0;       ///< Pa s, dynamic
-  double mean_free_path = 0.0;  ///< m; above 0 drag is divided by Cunningham's 1 + Kn (1.257 + 0.4 exp(-1.1 / Kn))
-  double temperature = 0.0;     ///< K, 0: of no effect
+  double density = 0.0;          ///< kg / m^3, 0: of no effect
+  double viscosity = 0.0;        ///< Pa s, dynamic
+  double mean_free_path = 0.0;   ///< m; above 0 drag is divided by Cunningham's 1 + Kn (1.257 + 0.4 exp(-1.1 / Kn))
+  double temperature = 0.0;      ///< K, 0: of no effect
+  double surface_tension = 0.0;  ///< N / m, of drops in it: for WallResponse::stick_below_weber
 };
 
 /// J / K
@@ -70,6 +71,12 @@ struct Material {
   double diameter = 0.0;         ///< m, of a sphere of its mass. Walls know of the radius alone.
   double density = 0.0;          ///< kg / m^3
   double charge_per_mass = 0.0;  ///< C / kg
+};
+
+/// The particles that one stands for.
+struct Parcel {
+  std::uint64_t number = 1;
+  double mass = 0.0;  ///< kg, of all; 0 without a diameter or a density
 };
 
 /// The derivatives of the velocity along each axis: x = du/dx and so on.

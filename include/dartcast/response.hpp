@@ -36,6 +36,9 @@ struct WallResponse {
   /// for particles of a simulation without collisions, not for those of bodies.
   double stick_below = 0.0;
   RestitutionTable table = {};  ///< in place of `restitution`
+  /// >= 0: likewise, if its Weber number rho d v^2 / sigma with this speed v is below it. For particles of a simulation that
+  /// have a diameter d and a density rho, in a fluid with the surface tension sigma (Fluid).
+  double stick_below_weber = 0.0;
 };
 
 // The responses as values, each with its own parameters: Reflect{0.5, 0.1}, Slide{}.
@@ -94,6 +97,13 @@ struct Acceleration {
   double duration = 0.0;  ///< of one advance(), > 0
 };
 
+/// Particles as drops, one entry per particle.
+struct Drops {
+  std::span<const double> diameters;  ///< m
+  std::span<const double> densities;  ///< kg / m^3
+  double surface_tension = 0.0;       ///< N / m, > 0
+};
+
 /// A callable for Environment::advance() that answers contacts by `responses` and writes each particle's new velocity
 /// and status. The patch of the wall met first decides which response it is; if that is a reflection, each wall
 /// gives its own restitution and friction. `velocities` in length per time, `dt` the duration > 0 in which the vertices
@@ -106,8 +116,10 @@ struct Acceleration {
 /// not grow at any contact. With an `acceleration` this is the energy at the moment of the contact. The sum of kinetic
 /// and potential energy is then bounded for any number of steps (docs/method.md, "Reflection"). Without one the sum
 /// changes at each contact by up to the work of a step.
+/// `drops`: for WallResponse::stick_below_weber, which has no effect without.
 ContactCallback respond_with(const WallResponses& responses, std::span<Vec3> velocities,
-                             std::span<ParticleStatus> statuses, double dt, const Acceleration& acceleration = {});
+                             std::span<ParticleStatus> statuses, double dt, const Acceleration& acceleration = {},
+                             const Drops& drops = {});
 
 /// Serves particles that a step has stopped at a wall beyond their last contact (StepReport::stopped). Each gets a
 /// velocity that all walls met in the step permit, with no more energy than it had at that wall. They stand still for

@@ -194,6 +194,8 @@ struct ParticlesScene {
   bool interception = false;  ///< each radius is half the diameter
   /// Random particles and inlets: the diameter of each, by its id and the seed, in place of the material's.
   std::optional<SizeDistribution> sizes = {};
+  /// How many particles each one stands for, if not 1: a number of user data with the name `number`, which a scene adds.
+  std::uint64_t number = 1;
 };
 
 /// Where a body has its particles: in a solid filled by spheres, on its surface, or in its volume.
@@ -287,11 +289,15 @@ struct MotionScene {
   /// Arrays whose values particles take at their places, as numbers of user data: one for each component, named as
   /// component_name(). They are where the field's arrays are, in its files or in the mesh, at the same times.
   std::vector<std::string> sample = {};
+  /// Numbers of user data that grow by a sampled value times the time, along the way of each particle: the name of the new
+  /// number, and that of the component. The value is taken to be linear over each step.
+  std::map<std::string, std::string> integrate = {};
   /// load_scene_files() makes these of `sample`, if the field has files; then `sample` is empty.
   std::vector<ArraySamples> sampled = {};
   double drag = 0.0;
   ForceOptions forces{};
   double diffusion = 0.0;          ///< m^2 / s
+  std::string diffusivity{};       ///< instead: one of the names of `sample`
   TurbulenceOptions turbulence{};  ///< its names are among those of `sample`
   unsigned substeps = 1;
   Integrator integrator = Integrator::euler;

@@ -93,6 +93,9 @@ struct SimulationOptions {
   /// m^2 / s, >= 0: each segment adds a random way to each particle's, with the variance 2 D dt along each axis. Velocities
   /// do not have it. Random numbers depend on the seed, the particle's id and the step alone. Not with collisions.
   double diffusion = 0.0;
+  /// Instead: the name of a value that a scene samples at points (MotionScene::sample), at least 0. Each way gets the drift
+  /// grad D dt, so that a uniform cloud stays uniform.
+  std::string diffusivity = {};
   TurbulenceOptions turbulence = {};                         ///< it needs a field
   WallResponse response = {};                                ///< what happens at walls: Reflect{0.5}, Slide{}, ...
   std::map<std::string, WallResponse> patch_responses = {};  ///< at the walls of these patches, by name
@@ -106,7 +109,8 @@ struct SimulationOptions {
   /// Between bodies. Without it they pass through each other.
   std::optional<BodyCollisionOptions> body_collisions = BodyCollisionOptions{};
   /// Names of numbers that each particle carries for its user (Simulation::user_data()). Output writes an array of each
-  /// name. A name is not empty, not used twice, and none that output uses itself (id, radius, velocity, ...).
+  /// name. A name is not empty, not used twice, and none that output uses itself (id, radius, velocity, ...). In
+  /// statistics a particle counts as often as its number `number` says, rounded down, and at least once.
   std::vector<std::string> user_data = {};
   /// The processes that share the particles, by their ids (Simulation); none: this one has all. They outlive it.
   Ranks* ranks = nullptr;
@@ -129,6 +133,8 @@ struct SimulationStep {
   std::vector<std::uint64_t> contact_ids;  ///< the id of each contact's particle
   /// The source of the cell at each contact's first wall. Edits at the end of the step may have replaced the cell.
   std::vector<std::uint32_t> contact_sources;
+  /// One of each contact, if the statistics have hits, and impacts or numbers of particles; else empty.
+  std::vector<Parcel> parcels;
   std::uint64_t injected = 0;
   std::uint64_t absorbed = 0;  ///< by edits before this step, too
   std::uint64_t escaped = 0;
@@ -383,8 +389,8 @@ class Simulation {
 /// Adds particles at random points of the free cells, of equal likelihood by volume (in the plane by area). A
 /// particle's point depends on the seed and its index in the set alone. An empty simulation of the same scene and seed
 /// adds the same ones. Throws InvalidArgument, nothing added, if no cell is free or the count is beyond 2^31. So do
-/// particles of another environment, or that have missed a move or an edit, and cells too thin to be hit. Cost: linear
-/// in the cells, and about 1 us for each particle.
+/// particles of another environment, or that have missed a move or an edit. Cost: linear in the cells, and about 1 us
+/// for each particle.
 void add_random(Environment& environment, Particles& particles, std::size_t count, std::uint64_t seed = 1);
 
 }  // namespace dartcast

@@ -19,11 +19,22 @@ namespace dartcast {
 
 // Hits of wall faces: how often particles met each of them.
 
+/// A contact as an impact on the wall.
+struct Impact {
+  std::uint64_t number = 1;  ///< of particles that meet the wall together (SimulationOptions::user_data)
+  double mass = 0.0;         ///< kg, of all of them; 0 if they have none
+  double energy = 0.0;       ///< J, of their motion relative to the wall
+  double sine = 0.0;         ///< of the angle between the wall and the way to it, in [0, 1]
+};
+
 /// The contacts at one wall face.
 struct FaceHits {
   CellFace face;  ///< of the free cell
   Patch patch;
   std::uint64_t hits = 0;
+  double mass = 0.0;                      ///< kg, of Impact; so are the next two
+  double energy = 0.0;                    ///< J
+  std::array<std::uint64_t, 9> angles{};  ///< hits by angle to the wall: from 0 to 10 degrees, ..., from 80 to 90
 
   bool operator==(const FaceHits&) const = default;
 };
@@ -33,16 +44,19 @@ struct FaceHits {
 ///
 /// A face continues over an edit if a free cell has a wall with the same corners afterwards. Vertices that the edit
 /// put on its edges, or took from them, make no difference. Every other face in the edit ends: one that was split,
-/// merged, or is no wall any more. Its hits are kept by patch (ended_by_patch()). New faces start at 0. So no hit is
+/// merged, or is no wall any more. Its hits are kept by patch (ended_by_patch()); its other sums end. New faces start at 0. So no hit is
 /// lost: the hits of the faces and those of ended faces are all contacts.
 class WallHits {
  public:
-  /// Counts the contacts of a step. Call it before the environment is edited. Cost: constant for each contact.
-  void add(const Environment& environment, const ContactList& contacts);
+  /// Counts the contacts of a step. Call it before the environment is edited. `impacts`: one of each contact; empty: each
+  /// counts once, and adds nothing else. Cost: constant for each contact.
+  void add(const Environment& environment, const ContactList& contacts, std::span<const Impact> impacts = {});
   /// Follows the environment's last edit. Call it after each edit. Cost: the cells touched.
   void update_after_edit(const Environment& environment);
 
-  [[nodiscard]] std::uint64_t of(CellFace face) const;
+  [[nodiscard]] std::uint64_t of(CellFace face) const { return at(face).hits; }
+  /// All that is kept of a face.
+  [[nodiscard]] FaceHits at(CellFace face) const;
   /// Those that were hit, in the order of cells and their faces.
   [[nodiscard]] std::vector<FaceHits> faces() const;
   /// Hits of faces that an edit has ended, by the number of the patch. Patches without such hits may be left out at the
@@ -57,9 +71,7 @@ class WallHits {
 
  private:
   struct Record {
-    std::uint16_t face = 0;
-    Patch patch;
-    std::uint64_t hits = 0;
+    FaceHits sums;
     std::vector<Vertex> corners;  // when it was hit first, or made by an edit
   };
 
@@ -122,8 +134,8 @@ struct ResidenceTimes {
   double bin = 0.0;
   std::array<std::uint64_t, bin_count> bins{};
 
-  /// `first_bin`: the width of a bin at the start, > 0. Precondition: seconds >= 0.
-  void add(double seconds, double first_bin);
+  /// `first_bin`: the width of a bin at the start, > 0. `number`: of particles. Precondition: seconds >= 0.
+  void add(double seconds, double first_bin, std::uint64_t number = 1);
   [[nodiscard]] double mean() const { return count == 0 ? 0.0 : sum / static_cast<double>(count); }
 
   bool operator==(const ResidenceTimes&) const = default;
@@ -138,9 +150,11 @@ std::vector<std::string> cell_quantities();
 /// Throws InvalidArgument if a name is none of these, or is there twice.
 void check_cell_quantities(std::span<const std::string> names);
 
-/// The statistics that a simulation keeps.
+/// The statistics that a simulation keeps. A particle that stands for several (SimulationOptions::user_data) counts as so
+/// many.
 struct StatisticsOptions {
   bool hits = false;                          ///< of wall faces, by particles and spheres
+  bool impacts = false;                       ///< with hits: the sums of Impact, too
   bool residence = false;                     ///< the times after which particles leave
   std::vector<SectionPlane> planes;           ///< crossings by particles and centres of spheres
   std::uint64_t pathlines_every = 0;          ///< pathlines of the particles whose id is a multiple of it; 0: of none
@@ -157,11 +171,12 @@ struct StatisticsOptions {
 struct PlanePassage {
   PlaneCrossing crossing;
   std::uint64_t id = 0;
-  double time = 0.0;  ///< s
-  double age = 0.0;   ///< s: the residence time
+  double time = 0.0;         ///< s
+  double age = 0.0;          ///< s: the residence time
+  std::uint64_t number = 1;  ///< of particles that it stands for
 };
 
-/// Residence times at the crossings of a plane. Their counts are the numbers of crossings.
+/// Residence times at the crossings of a plane. Their counts are the numbers of particles that cross.
 struct PlaneTotals {
   ResidenceTimes forward;
   ResidenceTimes backward;

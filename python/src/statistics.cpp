@@ -26,7 +26,7 @@ std::vector<FaceHits> hits_of(const py::object& faces) {
   std::vector<FaceHits> found;
   for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
     const FaceHitsRow& r = rows(i);
-    found.push_back({CellFace{Cell{r.cell}, r.face}, Patch{r.patch}, r.hits});
+    found.push_back({CellFace{Cell{r.cell}, r.face}, Patch{r.patch}, r.hits, r.mass, r.energy, r.angles});
   }
   return found;
 }
@@ -63,17 +63,17 @@ void bind_hits(py::module_& m) {
   c.def(py::init<>());
   c.def(
       "add",
-      [](WallHits& hits, const EnvironmentHandle& h, const StepReport& report) {
+      [](WallHits& hits, const EnvironmentHandle& h, const StepReport& report, const std::vector<Impact>& impacts) {
         const Use use(*h.usage, "the environment");
         require_walls(h.environment->map(), report.contacts);
-        hits.add(*h.environment, report.contacts);
+        hits.add(*h.environment, report.contacts, impacts);
       },
-      py::arg("environment"), py::arg("report"), doc("WallHits::add"));
+      py::arg("environment"), py::arg("report"), py::arg("impacts") = std::vector<Impact>(), doc("WallHits::add"));
   members_of_WallHits(c);
   c.def("of", &WallHits::of, py::arg("face"), "The hits of one face.");
   c.def(
       "faces", [](const WallHits& hits) { return rows_of(hits.faces()); },
-      about("WallHits::faces", "A structured array (cell, face, patch, hits)."));
+      about("WallHits::faces", "A structured array (cell, face, patch, hits, mass, energy, angles)."));
   c.def(
       "ended_by_patch", [](const WallHits& hits) { return hits.ended_by_patch(); }, doc("WallHits::ended_by_patch"));
   c.def(

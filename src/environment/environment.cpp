@@ -336,6 +336,10 @@ void Environment::check_advance(const Particles& particles, const StepOptions& o
   if (tally() != nullptr && !tally()->fits(complex()))
     throw InvalidArgument(fmt::format(
         "{}: the tally has missed an edit of its environment: call its update_after_edit() after each edit", caller));
+  const std::size_t numbers = members_->tallied.numbers.size();
+  if (numbers > 0 && numbers != particles.size())
+    throw InvalidArgument(fmt::format("{}: the tally has numbers for {} particles, not {}: call set_tally() again",
+                                      caller, numbers, particles.size()));
 }
 
 StepReport Environment::advance(Particles& particles, std::span<const Vec3> targets, const ContactCallback& respond,
@@ -373,9 +377,13 @@ StepReport Environment::advance_in_rounds(Particles& particles, std::span<const 
 void Environment::set_replay_hook(ReplayHook hook) { members_->replay_hook = std::move(hook); }
 const ReplayHook& Environment::replay_hook() const { return members_->replay_hook; }
 
-void Environment::set_tally(CellTally* tally) { members_->tallied = {tally, {}}; }
+void Environment::set_tally(CellTally* tally, std::span<const std::uint64_t> numbers) {
+  members_->tallied = {tally, numbers, {}};
+}
 CellTally* Environment::tally() const { return members_->tallied.tally; }
-void Environment::tally_points(std::span<const double> radii) { members_->tallied.radii = radii; }
+detail::Tallied Environment::set_tallied(const detail::Tallied& tallied) {
+  return std::exchange(members_->tallied, tallied);
+}
 
 // Repairs would turn the corners of cells that look inside out.
 std::unique_ptr<Environment> environment_as_it_is(const MeshData& mesh) {

@@ -279,10 +279,16 @@ bool has_statistics(const StatisticsState& s) { return s.has_hits || s.observes_
 template <class Archive>
 void fields(Archive& a, StatisticsState& s) {
   if (!a.has_more(has_statistics(s))) return;
-  auto kept = static_cast<std::uint8_t>((s.has_hits ? 1 : 0) | (s.cells.empty() ? 0 : 2));
+  auto kept = static_cast<std::uint8_t>((s.has_hits ? 1 : 0) | (s.cells.empty() ? 0 : 2) | (s.has_impacts ? 4 : 0));
   a.value(kept);
   s.has_hits = (kept & 1) != 0;
-  a.list(s.hits, [&](FaceHits& f) { values(a, f.face.cell.value, f.face.face, f.patch.value, f.hits); });
+  s.has_impacts = (kept & 4) != 0;
+  a.list(s.hits, [&](FaceHits& f) {
+    values(a, f.face.cell.value, f.face.face, f.patch.value, f.hits);
+    if (!s.has_impacts) return;
+    values(a, f.mass, f.energy);
+    for (std::uint64_t& n : f.angles) a.value(n);
+  });
   a.list(s.ended_hits, [&](std::uint64_t& n) { a.value(n); });
   value_as<std::uint8_t>(a, s.observes_motion);
   a.list(s.planes, [&](PlaneTotals& p) {

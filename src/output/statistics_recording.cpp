@@ -59,8 +59,10 @@ void StatisticsRecording::add_crossings(const Simulation& simulation) {
 
 void StatisticsRecording::add_frame(const Simulation& simulation, std::span<const RecordingFrame> frames) {
   if (scene_.options.hits) {
-    write_frame_file(writing_, folder_ / walls_name(frames.back()),
-                     wall_faces_file(simulation.environment(), simulation.statistics().hits).data(), compression_);
+    write_frame_file(
+        writing_, folder_ / walls_name(frames.back()),
+        wall_faces_file(simulation.environment(), simulation.statistics().hits, scene_.options.impacts).data(),
+        compression_);
     write_list(writing_, folder_ / "walls.pvd", frames, walls_name);
   }
   if (simulation.steps() % every_ == 0) end_interval(simulation);

@@ -35,10 +35,17 @@ struct FaceValues {
   std::vector<double> hits_per_area;
   std::vector<std::int32_t> patch;
   std::vector<std::uint32_t> cell;
+  std::vector<double> mass;
+  std::vector<double> energy;
+  std::array<std::vector<std::int64_t>, 9> angles;
 
   FaceValues(const CellComplex& complex, const std::vector<CellFace>& faces, const WallHits& counted) {
     for (const CellFace face : faces) {
-      const std::uint64_t n = counted.of(face);
+      const FaceHits sums = counted.at(face);
+      const std::uint64_t n = sums.hits;
+      mass.push_back(sums.mass);
+      energy.push_back(sums.energy);
+      for (std::size_t i = 0; i < angles.size(); ++i) angles[i].push_back(static_cast<std::int64_t>(sums.angles[i]));
       const double area = area_of(complex, face);
       hits.push_back(static_cast<std::int64_t>(n));
       hits_per_area.push_back(area > 0.0 ? static_cast<double>(n) / area : 0.0);
@@ -81,7 +88,7 @@ std::vector<ExactSum> wall_areas(const Environment& environment, const std::func
   return areas;
 }
 
-VtpFile wall_faces_file(const Environment& environment, const WallHits& hits) {
+VtpFile wall_faces_file(const Environment& environment, const WallHits& hits, bool with_impacts) {
   const CombinatorialMap& map = environment.map();
   const WallFaceList walls = wall_face_list(map);
   std::vector<Vec3> points;
@@ -95,6 +102,12 @@ VtpFile wall_faces_file(const Environment& environment, const WallHits& hits) {
   FaceValues values(environment.complex(), walls.faces, hits);
   file.add_for_cells("hits", std::move(values.hits));
   file.add_for_cells("hits_per_area", std::move(values.hits_per_area));
+  if (with_impacts) {
+    file.add_for_cells("impact_mass", std::move(values.mass));
+    file.add_for_cells("impact_energy", std::move(values.energy));
+    for (std::size_t i = 0; i < values.angles.size(); ++i)
+      file.add_for_cells(fmt::format("impacts_from_{}_degrees", 10 * i), std::move(values.angles[i]));
+  }
   file.add_for_cells("patch", std::move(values.patch));
   file.add_for_cells("cell", std::move(values.cell));
   std::vector<std::string> names;
@@ -107,7 +120,7 @@ VtpFile wall_faces_file(const Environment& environment, const WallHits& hits) {
 void write_wall_hits(const Environment& environment, const WallHits& hits, const std::filesystem::path& file) {
   if (file.extension() != ".vtp")
     throw InvalidArgument(fmt::format("{}: wall hits are written as .vtp; give the file this ending", file.string()));
-  write_xml(file, wall_faces_file(environment, hits).data(), Compression::none, write_pieces);
+  write_xml(file, wall_faces_file(environment, hits, false).data(), Compression::none, write_pieces);
 }
 
 }  // namespace dartcast

@@ -27,7 +27,7 @@ WallFaceList wall_face_list(const CombinatorialMap& map);
 /// of the cells, nor on ranks that have parts of them. `is_own`: whether a cell counts here. Cost: linear in the cells.
 std::vector<ExactSum> wall_areas(const Environment& environment, const std::function<bool(Cell)>& is_own);
 
-/// As write_wall_hits() describes it. Cost: linear in the cells.
-VtpFile wall_faces_file(const Environment& environment, const WallHits& hits);
+/// As write_wall_hits() describes it, and the other sums of the faces if asked for. Cost: linear in the cells.
+VtpFile wall_faces_file(const Environment& environment, const WallHits& hits, bool with_impacts);
 
 }  // namespace dartcast

@@ -23,6 +23,8 @@ void check(const WallResponse& r) {
     throw InvalidArgument("response: a friction must be finite and not negative");
   if (!(r.stick_below >= 0.0) || !std::isfinite(r.stick_below))
     throw InvalidArgument("response: the speed to stick below must be finite and not negative");
+  if (!(r.stick_below_weber >= 0.0) || !std::isfinite(r.stick_below_weber))
+    throw InvalidArgument("response: the Weber number to stick below must be finite and not negative");
   const auto increases = [](const std::vector<double>& list, double from, double to) {
     return !list.empty() && list.front() >= from && list.back() <= to &&
            std::adjacent_find(list.begin(), list.end(), [](double a, double b) { return !(a < b); }) == list.end();
@@ -161,6 +163,16 @@ struct LibraryResponse {
   std::span<ParticleStatus> statuses;
   double dt;
   Acceleration acceleration;
+  Drops drops;
+
+  // `speed`: into the wall.
+  [[nodiscard]] bool sticks(const WallResponse& response, std::uint32_t particle, double speed) const {
+    if (response.kind != WallResponseKind::reflect) return false;
+    if (response.stick_below > 0.0 && speed < response.stick_below) return true;
+    if (response.stick_below_weber == 0.0 || drops.diameters.empty()) return false;
+    const double inertia = drops.densities[particle] * drops.diameters[particle] * speed * speed;
+    return speed <= 0.0 || inertia < response.stick_below_weber * drops.surface_tension;
+  }
 
   // `impact`: the velocity relative to the wall, before.
   [[nodiscard]] Vec3 rebound(const Vec3& v, const JointWalls& walls, const Vec3& impact, const Vec3& lead) const {
@@ -197,9 +209,8 @@ struct LibraryResponse {
     const Vec3 wall_velocity = contact.wall_displacement * (1.0 / dt);
     Vec3& velocity = velocities[contact.particle];
     const WallResponse& response = responses.of(walls.front().patch);
-    const bool sticks = response.stick_below > 0.0 && response.kind == WallResponseKind::reflect &&
-                        dot(wall_velocity - velocity, walls.front().normal) < response.stick_below;
-    switch (sticks ? WallResponseKind::stick : response.kind) {
+    const double speed = dot(wall_velocity - velocity, walls.front().normal);
+    switch (sticks(response, contact.particle, speed) ? WallResponseKind::stick : response.kind) {
       case WallResponseKind::reflect: return reflect(contact, walls, earlier);
       case WallResponseKind::slide:
         velocity = wall_velocity + slid(velocity - wall_velocity, walls, earlier);
@@ -224,13 +235,18 @@ bool is_library_response(const ContactCallback& respond) { return respond.target
 }  // namespace detail
 
 ContactCallback respond_with(const WallResponses& responses, std::span<Vec3> velocities,
-                             std::span<ParticleStatus> statuses, double dt, const Acceleration& acceleration) {
+                             std::span<ParticleStatus> statuses, double dt, const Acceleration& acceleration,
+                             const Drops& drops) {
   if (!(dt > 0.0)) throw InvalidArgument("respond_with: dt must be positive");
   if (velocities.size() != statuses.size())
     throw InvalidArgument("respond_with: one velocity and one status per particle are needed");
   if (acceleration.value != Vec3{} && !(acceleration.duration > 0.0))
     throw InvalidArgument("respond_with: the duration of an acceleration must be positive");
-  return LibraryResponse{responses, velocities, statuses, dt, acceleration};
+  if (drops.diameters.size() != drops.densities.size() ||
+      (!drops.diameters.empty() && (drops.diameters.size() != velocities.size() || !(drops.surface_tension > 0.0))))
+    throw InvalidArgument(
+        "respond_with: one diameter and one density per drop are needed, and a surface tension above 0");
+  return LibraryResponse{responses, velocities, statuses, dt, acceleration, drops};
 }
 
 void hold_stopped(const StepReport& report, const WallResponses& responses, std::span<Vec3> velocities,

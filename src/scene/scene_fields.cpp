@@ -70,6 +70,15 @@ void read_fields(TomlTable& motion, const std::filesystem::path& folder, MotionS
   read_field(motion, "force", folder, scene.force);
   if (motion.get("sample", scene.sample) && std::count(scene.sample.begin(), scene.sample.end(), "") != 0)
     motion.fail("sample", "sample must be names of arrays");
+  const std::string& diffusivity = scene.diffusivity;
+  if (!diffusivity.empty() && std::count(scene.sample.begin(), scene.sample.end(), diffusivity) == 0)
+    scene.sample.push_back(diffusivity);
+  if (motion.has("integrate")) {
+    TomlTable t = motion.table("integrate");
+    for (const std::string& name : t.keys()) t.get(name, scene.integrate[name]);
+    t.finish();
+    if (scene.sample.empty()) motion.fail("integrate", "integrate needs sample: values that particles take");
+  }
   if (motion.has("turbulence")) read_turbulence(motion.table("turbulence"), scene);
   const bool has_field = scene.field.given();
   if (!has_field && motion.has("turbulence")) motion.fail("turbulence", "turbulence needs a field: give field");

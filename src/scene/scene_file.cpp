@@ -159,7 +159,10 @@ class SceneReader {
     t.get("steps", scene.steps, 0, max_steps);
     t.get("gravity", scene.gravity);
     t.get("drag", scene.drag, Range::not_negative);
-    t.get("diffusion", scene.diffusion, Range::not_negative);
+    if (t.is_text("diffusion"))
+      t.get("diffusion", scene.diffusivity);
+    else
+      t.get("diffusion", scene.diffusion, Range::not_negative);
     t.get("substeps", scene.substeps, 1U, 1000U);
     t.get("wall_motion", scene.wall_motion,
           {{"carried", WallMotion::carried}, {"simultaneous", WallMotion::simultaneous}});
@@ -176,6 +179,7 @@ class SceneReader {
     t.get("viscosity", fluid.viscosity, Range::positive);
     t.get("mean_free_path", fluid.mean_free_path, Range::not_negative);
     t.get("temperature", fluid.temperature, Range::positive);
+    t.get("surface_tension", fluid.surface_tension, Range::positive);
     t.finish();
   }
 
@@ -238,6 +242,7 @@ class SceneReader {
     }
     t.get("friction", r.friction, Range::not_negative);
     t.get("stick_below", r.stick_below, Range::not_negative);
+    t.get("stick_below_weber", r.stick_below_weber, Range::not_negative);
   }
 
   static ContactScene contact(TomlTable t) {

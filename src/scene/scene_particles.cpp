@@ -134,6 +134,7 @@ void read_material(TomlTable& t, ParticlesScene& scene) {
     t.get("diameter", scene.material.diameter, Range::positive);
   t.get("density", scene.material.density, Range::positive);
   t.get("charge_per_mass", scene.material.charge_per_mass, {-Range::unlimited, Range::unlimited});
+  t.get("number", scene.number, 1, 0xffffffffU);
   if (t.get("interception", scene.interception) && t.has("radius"))
     t.fail("interception", "interception takes the radius from the diameter: leave radius out");
 }

@@ -51,6 +51,8 @@ void read_cells(TomlTable t, std::vector<std::string>& quantities) {
 StatisticsScene read_statistics(TomlTable t) {
   StatisticsScene scene;
   t.get("hits", scene.options.hits);
+  if (t.get("impacts", scene.options.impacts) && scene.options.impacts && !scene.options.hits)
+    t.fail("impacts", "impacts are sums of hits: set hits = true");
   t.get("residence", scene.options.residence);
   for (TomlTable& plane : t.tables("plane")) read_plane(plane, scene.options.planes);
   t.get("crossings", scene.crossings);

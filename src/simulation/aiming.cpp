@@ -25,10 +25,11 @@ constexpr std::size_t tracer_grain = 256;
 }  // namespace
 
 Aiming::Aiming(const Environment& environment, Followers& followers, const MovingVertices& motion,
-               const SimulationOptions& options)
+               const SimulationOptions& options, const SampledFields& sampled)
     : environment_(environment),
       motion_(motion),
       options_(options),
+      sampled_(sampled),
       eddies_(options, environment.map().dimension() == 2),
       forces_(environment, motion, options, eddies_) {
   followers.add([this](const ComplexEditReport& edit, OrphanPolicy /*orphaned*/) {
@@ -42,6 +43,11 @@ void Aiming::load_step() {
     throw InvalidArgument(
         "simulation: the integrator rk4 follows a velocity field, but there is none: call set_field()");
   if (eddies_.act()) check_field("turbulence");
+  const VectorField* const diffusivity = sampled_.component(options_.diffusivity).field;
+  if (!options_.diffusivity.empty() && (diffusivity == nullptr || diffusivity->place() != FieldPlace::points))
+    throw InvalidArgument(fmt::format(
+        "simulation: the diffusivity \"{}\" must be a component of an array at points that the scene samples",
+        options_.diffusivity));
   if (forces_.acts()) forces_.check(fields());
   if (field_) field_->hold(motion_.time(), motion_.time() + options_.dt);
   if (force_) force_->hold(motion_.time(), motion_.time() + options_.dt);
@@ -101,7 +107,7 @@ void Aiming::set_times(double begin, double duration) {
 double Aiming::lost_to_drag(double dt) const { return -exponential_less_one(-options_.drag * dt); }
 
 Acceleration Aiming::acceleration(double dt) const {
-  if (field_ || force_ || forces_.acts() || options_.diffusion > 0.0) return {};
+  if (field_ || force_ || forces_.acts() || diffuses()) return {};
   if (options_.drag == 0.0) return {options_.gravity, dt};
   return {options_.gravity * (lost_to_drag(dt) / (options_.drag * dt)), dt};
 }
@@ -126,7 +132,7 @@ void Aiming::aim(ParticleSet& set, double dt, bool moving) {
     options_.integrator == Integrator::rk4 ? aim_by_runge_kutta(segment) : aim_at_field(segment);
     if (eddies_.act()) add_eddies(segment, set);
   }
-  if (options_.diffusion > 0.0) diffuse(segment, set.ids());
+  if (diffuses()) diffuse(segment, set.ids());
 }
 
 // Particles that follow the field follow the eddy; drag takes them a share of the way to its velocity.
@@ -143,8 +149,35 @@ void Aiming::add_eddies(const Segment& segment, ParticleSet& set) {
   });
 }
 
+// Linear in the particle's simplex. A sliver has no gradient.
+Aiming::Diffusivity Aiming::diffusivity_at(const ParticleState& state, bool moving) const {
+  if (options_.diffusivity.empty()) return {options_.diffusion, {}};
+  const CellComplex& complex = environment_.complex();
+  const Corners now = complex.corners(state.at());
+  const auto [field, number] = sampled_.component(options_.diffusivity);
+  const Weights at = detail::barycentric(moving ? complex.previous_corners(state.at()) : now, state.position);
+  const unsigned corners = complex.map().dimension() + 1;
+  std::array<double, 4> values{};
+  double value = 0.0;
+  for (unsigned k = 0; k < corners; ++k) {
+    Weights corner{};
+    corner[k] = 1.0;
+    const Vec3 v = field->at(complex, state.at(), corner, now);
+    values[k] = number == 0 ? v.x : number == 1 ? v.y : v.z;
+    value += at[k] * values[k];
+  }
+  // In the plane the corners have a fourth one above it, which must not tilt the gradient.
+  const std::array<Vec3, 3> edges = {now[1] - now[0], now[2] - now[0],
+                                     corners == 4 ? now[3] - now[0] : Vec3{0.0, 0.0, 1.0}};
+  const std::array<Vec3, 3> duals = detail::duals(edges);
+  const double volume = dot(edges[0], duals[0]);
+  Vec3 gradient;
+  for (unsigned k = 1; k < corners; ++k) gradient += duals[k - 1] * ((values[k] - values[0]) / volume);
+  return {std::max(value, 0.0), is_finite(gradient) ? gradient : Vec3{}};
+}
+
 void Aiming::diffuse(const Segment& segment, std::span<const std::uint64_t> ids) {
-  const double length = std::sqrt(2.0 * options_.diffusion * segment.dt);
+  const double length = options_.diffusivity.empty() ? std::sqrt(2.0 * options_.diffusion * segment.dt) : 1.0;
   const RandomMoment moment = {options_.seed, RandomPurpose::diffusion, moment_};
   const bool planar = environment_.map().dimension() == 2;
   parallel_for(targets_.size(), aim_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
@@ -153,6 +186,10 @@ void Aiming::diffuse(const Segment& segment, std::span<const std::uint64_t> ids)
     detail::draw_ways({moment, length, planar, ids.subspan(begin, size), std::span(ways).first(size)});
     for (std::size_t i = begin; i < end; ++i) {
       if (segment.statuses[i] != ParticleStatus::alive || segment.particles[i].held) continue;
+      if (!options_.diffusivity.empty()) {
+        const Diffusivity d = diffusivity_at(segment.particles[i], segment.moving);
+        ways[i - begin] = ways[i - begin] * std::sqrt(2.0 * d.value * segment.dt) + d.gradient * segment.dt;
+      }
       targets_[i] = flushed(targets_[i] + ways[i - begin]);
     }
   });

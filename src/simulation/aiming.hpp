@@ -14,6 +14,7 @@
 #include "simulation/force_step.hpp"
 #include "simulation/moving_vertices.hpp"
 #include "simulation/particle_set.hpp"
+#include "simulation/sampled_fields.hpp"
 
 namespace dartcast {
 
@@ -22,7 +23,7 @@ class Aiming {
  public:
   /// All outlive it.
   Aiming(const Environment& environment, Followers& followers, const MovingVertices& motion,
-         const SimulationOptions& options);
+         const SimulationOptions& options, const SampledFields& sampled);
 
   void set_field(VelocityField field) { field_ = std::move(field); }
   void set_force(VectorField force) { force_ = std::move(force); }
@@ -75,6 +76,12 @@ class Aiming {
   void aim_by_runge_kutta(const Segment& segment);
   void aim_by_forces(const Segment& segment, ParticleSet& set);
   void add_eddies(const Segment& segment, ParticleSet& set);
+  struct Diffusivity {
+    double value = 0.0;  // m^2 / s
+    Vec3 gradient;       // m / s
+  };
+  [[nodiscard]] bool diffuses() const { return options_.diffusion > 0.0 || !options_.diffusivity.empty(); }
+  [[nodiscard]] Diffusivity diffusivity_at(const ParticleState& state, bool moving) const;
   void diffuse(const Segment& segment, std::span<const std::uint64_t> ids);
   [[nodiscard]] ForceStep::Fields fields() const;
   void aim_one(const Segment& segment, std::size_t i);
@@ -89,6 +96,7 @@ class Aiming {
   const Environment& environment_;
   const MovingVertices& motion_;
   const SimulationOptions& options_;
+  const SampledFields& sampled_;
   std::optional<VelocityField> field_;
   std::optional<VectorField> force_;  // accelerations, on top of gravity
   Eddies eddies_;

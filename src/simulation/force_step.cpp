@@ -80,6 +80,7 @@ void check_fluid(const ForceOptions& forces) {
   check(fluid.viscosity, "viscosity");
   check(fluid.mean_free_path, "mean free path");
   check(fluid.temperature, "temperature");
+  check(fluid.surface_tension, "surface tension");
   if (fluid.density == 0.0 && std::any_of(forces.terms.begin(), forces.terms.end(), needs_fluid_density))
     throw InvalidArgument("simulation: the forces need the fluid's density: give it");
   if (fluid.viscosity == 0.0 && (has_drag(forces) || has_term(forces, Force::saffman_mei)))

@@ -53,6 +53,7 @@ std::string packed(const SimulationStep& s, const StatisticsComponent& statistic
   out.put(s.report.stopped);
   out.put(met.contact_ids);
   out.put(met.contact_sources);
+  out.put(met.parcels);
   out.put(s.left);
   out.put(s.overlaps);
   out.put(statistics.statistics().passages);
@@ -70,6 +71,7 @@ RankStep unpacked(const std::string& bytes) {
   r.step.report.stopped = in.take_list<StoppedParticle>();
   r.step.contact_ids = in.take_list<std::uint64_t>();
   r.step.contact_sources = in.take_list<std::uint32_t>();
+  r.step.parcels = in.take_list<Parcel>();
   r.step.left = in.take_list<LeftParticle>();
   r.step.overlaps = in.take_list<SphereOverlap>();
   r.passages = in.take_list<PlanePassage>();
@@ -125,6 +127,7 @@ void add_run(const ContactRun& run, const SimulationStep& from, SimulationStep& 
     all.contacts.push_back(c);
     to.contact_ids.push_back(run.id);
     to.contact_sources.push_back(from.contact_sources[i]);
+    if (!from.parcels.empty()) to.parcels.push_back(from.parcels[i]);
   }
 }
 
@@ -148,6 +151,7 @@ void keep_contacts(std::span<RankStep> ranks, const SimulationStep& own, Simulat
   all.report.contacts = own.report.contacts;
   all.contact_ids = own.contact_ids;
   all.contact_sources = own.contact_sources;
+  all.parcels = own.parcels;
   for (RankStep& r : ranks.subspan(1)) {
     for (LeftParticle& p : r.step.left) p.contact = of_another_rank;
   }

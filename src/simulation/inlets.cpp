@@ -35,9 +35,10 @@ void check_rate(const InletParticles& inlet, double largest_factor, double dt) {
   constexpr auto max_injected = static_cast<double>(most_at_once);  // in a step
   if (!(inlet.rate >= 0.0 && inlet.rate * largest_factor * dt <= max_injected))
     throw InvalidArgument(fmt::format(
-        "simulation: an inlet's rate is {}: it must not be negative, and at most {} a second with steps of {} s "
-        "(2^31 particles a step)",
-        inlet.rate, max_injected / (largest_factor * dt), dt));
+        "simulation: an inlet's rate is {} particles a second{}: it must not be negative, and at most {} with steps of "
+        "{} "
+        "s (2^31 particles a step)",
+        inlet.rate, inlet.mass_rate != 0.0 ? ", by its mass rate" : "", max_injected / (largest_factor * dt), dt));
   check_count(inlet.burst_count);
   for (const double t : inlet.burst_times) {
     if (!(t >= 0.0) || !std::isfinite(t))
@@ -46,8 +47,9 @@ void check_rate(const InletParticles& inlet, double largest_factor, double dt) {
   }
 }
 
-// Particles a second.
-double number_rate(const InletParticles& inlet, const Material& material, const std::optional<SizeSampler>& sizes) {
+// Particles a second, each of which stands for so many.
+double number_rate(const InletParticles& inlet, const Material& material, const std::optional<SizeSampler>& sizes,
+                   std::uint64_t number) {
   const double d = material.diameter;
   const double mass = 3.14159265358979323846 / 6.0 * material.density * (sizes ? sizes->mean_cube() : d * d * d);
   if (!(inlet.mass_rate >= 0.0) || inlet.rate != 0.0)
@@ -56,7 +58,7 @@ double number_rate(const InletParticles& inlet, const Material& material, const 
         inlet.mass_rate));
   if (!(mass > 0.0))
     throw InvalidArgument("simulation: an inlet's mass rate needs particles of a diameter and density");
-  return inlet.mass_rate / mass;
+  return inlet.mass_rate / (mass * static_cast<double>(number));
 }
 
 }  // namespace
@@ -97,7 +99,7 @@ void Inlets::add(const ParticlesScene& group, const InletParticles& inlet, std::
                  group.interception,
                  group.with_field || by_flux};
   if (group.sizes) added.sizes.emplace(*group.sizes, options_.seed);
-  if (inlet.mass_rate != 0.0) added.scene.rate = number_rate(inlet, group.material, added.sizes);
+  if (inlet.mass_rate != 0.0) added.scene.rate = number_rate(inlet, group.material, added.sizes, group.number);
   check_rate(added.scene, added.waveform.largest_factor(), options_.dt);
   if (added.with_field) aiming_.check_field("an inlet with the field's velocity");
   if (patch) {

@@ -28,6 +28,8 @@ void check(const NewParticle& particle, const Environment& environment, const Si
     fail("radius is {}: points alone move at the same time as the walls: leave it out, or take the wall motion carried",
          radius);
   if (const std::string wrong = wrong_material(material, options.forces); !wrong.empty()) fail("{}", wrong);
+  if (knows_drops(options) && (material.diameter == 0.0 || material.density == 0.0))
+    fail("diameter is {} and density {}: stick_below_weber of walls needs both", material.diameter, material.density);
   if (!numbers.empty() && numbers.size() != options.user_data.size())
     throw InvalidArgument(fmt::format("simulation: {} numbers of user data for a particle; the options name {}",
                                       numbers.size(), options.user_data.size()));

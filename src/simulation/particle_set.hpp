@@ -1,6 +1,7 @@
 // The particles of a simulation: their states in the environment, and the table beside them. Not installed.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -98,6 +99,17 @@ struct ParticleSet {
     }
   }
 };
+
+/// Whether this holds for the response of any wall.
+template <class Holds>
+bool any_response(const SimulationOptions& options, const Holds& holds) {
+  return holds(options.response) || std::any_of(options.patch_responses.begin(), options.patch_responses.end(),
+                                                [&](const auto& patch) { return holds(patch.second); });
+}
+/// Whether walls take particles as drops.
+inline bool knows_drops(const SimulationOptions& options) {
+  return any_response(options, [](const WallResponse& r) { return r.stick_below_weber > 0.0; });
+}
 
 /// Throws InvalidArgument where a particle cannot start so. `whose`: "particle {}'s", with this number.
 void check(const NewParticle& particle, const Environment& environment, const SimulationOptions& options,

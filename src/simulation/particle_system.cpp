@@ -73,8 +73,9 @@ void check_wall_motion(const SimulationOptions& o) {
 // While it lives, steps in the environment are added to a tally; null: as before.
 class TallyUse {
  public:
-  TallyUse(Environment& environment, CellTally* tally) : environment_(environment), former_(environment.tally()) {
-    if (tally != nullptr) environment.set_tally(tally);
+  TallyUse(Environment& environment, CellTally* tally, std::vector<std::uint64_t> numbers)
+      : environment_(environment), former_(environment.tally()), numbers_(std::move(numbers)) {
+    if (tally != nullptr) environment.set_tally(tally, numbers_);
   }
   TallyUse(const TallyUse&) = delete;
   TallyUse& operator=(const TallyUse&) = delete;
@@ -83,6 +84,7 @@ class TallyUse {
  private:
   Environment& environment_;
   CellTally* former_;
+  std::vector<std::uint64_t> numbers_;
 };
 
 void check(const SimulationOptions& o, bool planar) {
@@ -93,7 +95,9 @@ void check(const SimulationOptions& o, bool planar) {
   if (!is_finite(o.gravity)) throw InvalidArgument("simulation: gravity must be finite");
   if (!(o.diffusion >= 0.0) || !std::isfinite(o.diffusion))
     throw InvalidArgument("simulation: diffusion must be finite and not negative");
-  if (o.diffusion > 0.0 && o.collisions)
+  if (o.diffusion > 0.0 && !o.diffusivity.empty())
+    throw InvalidArgument("simulation: diffusion and diffusivity are both given: give one of them");
+  if ((o.diffusion > 0.0 || !o.diffusivity.empty()) && o.collisions)
     throw InvalidArgument("simulation: spheres that collide have no random ways: leave collisions or diffusion out");
   if (o.substeps == 0) throw InvalidArgument("simulation: substeps must be at least 1");
   check_integrator(o);
@@ -101,13 +105,15 @@ void check(const SimulationOptions& o, bool planar) {
   check_forces(o, planar);
   check(o.step, "simulation");
   check_names(o.user_data);
+  if (knows_drops(o) && o.forces.fluid.surface_tension == 0.0)
+    throw InvalidArgument("simulation: stick_below_weber needs the fluid's surface tension: give it");
   if (!o.collisions) return;
-  const auto is_plain = [](const WallResponse& r) { return r.stick_below == 0.0 && r.table.speeds.empty(); };
-  if (!is_plain(o.response) || !std::all_of(o.patch_responses.begin(), o.patch_responses.end(),
-                                            [&](const auto& patch) { return is_plain(patch.second); }))
+  if (any_response(o, [](const WallResponse& r) {
+        return r.stick_below != 0.0 || r.stick_below_weber != 0.0 || !r.table.speeds.empty();
+      }))
     throw InvalidArgument(
         "simulation: spheres that collide know of one restitution for each wall: leave collisions out, or leave out "
-        "stick_below and tables of restitution");
+        "stick_below, stick_below_weber and tables of restitution");
   if (are_several(o.ranks))
     throw InvalidArgument(
         "simulation: spheres that collide need all others, and ranks have some each: run this scene with one process, "
@@ -133,7 +139,8 @@ ParticleSystem::ParticleSystem(Environment& environment, Followers& followers, M
       options_(options),
       responses_(responses_of(options, environment.map())),
       set_(options.user_data.size()),
-      aiming_(environment, followers, motion, options_),
+      parcels_(options_),
+      aiming_(environment, followers, motion, options_, sampled_),
       sampled_(environment, followers, options_.user_data),
       contacts_(environment, followers, motion, options_, responses_) {
   check(options, environment.map().dimension() == 2);
@@ -160,7 +167,7 @@ void ParticleSystem::step(double /*begin*/) {
   mark_held();
   remove_gone(departed);
   motion_.count_step();
-  take_samples();
+  take_samples(options_.dt);
 }
 
 void ParticleSystem::move_vertices() {
@@ -190,7 +197,7 @@ void ParticleSystem::advance_segment(unsigned segment, std::vector<std::uint8_t>
   }
   const ScopeTimer timer(totals_.seconds_detect);
   const ContactCallback respond = response(dt);
-  const TallyUse use(environment_, tally_);
+  const TallyUse use(environment_, tally_, tally_ != nullptr ? parcels_.numbers(set_) : std::vector<std::uint64_t>());
   if (set_.spheres == 0) {
     StepReport report =
         part_ != nullptr ? advance_in_part(aiming_.acceleration(dt), departed)
@@ -212,13 +219,20 @@ void ParticleSystem::advance_segment(unsigned segment, std::vector<std::uint8_t>
   last_.overlaps.insert(last_.overlaps.end(), report.overlaps.begin(), report.overlaps.end());
 }
 
+// Valid until there are more or fewer particles.
+ContactCallback ParticleSystem::answer(const Acceleration& acceleration) {
+  Drops drops;
+  if (options_.forces.fluid.surface_tension > 0.0)
+    drops = {set_.table[set_.table.diameter], set_.table[set_.table.density], options_.forces.fluid.surface_tension};
+  return respond_with(responses_, set_.velocities(), set_.statuses(), options_.dt, acceleration, drops);
+}
+
 // Impulses of other spheres change velocities, too: contacts of pushed spheres know of no acceleration.
 ContactCallback ParticleSystem::response(double dt) {
-  ContactCallback free =
-      respond_with(responses_, set_.velocities(), set_.statuses(), options_.dt, aiming_.acceleration(dt));
+  ContactCallback free = answer(aiming_.acceleration(dt));
   if (!collides()) return free;
-  return [this, free, pushed = respond_with(responses_, set_.velocities(), set_.statuses(), options_.dt)](
-             const Contact& contact, std::span<const WallHit> walls, std::span<const WallHit> earlier) {
+  return [this, free, pushed = answer({})](const Contact& contact, std::span<const WallHit> walls,
+                                           std::span<const WallHit> earlier) {
     return (contacts_.pushed(contact.particle) ? pushed : free)(contact, walls, earlier);
   };
 }
@@ -230,6 +244,7 @@ void ParticleSystem::count_contacts() {
   last_.contact_sources.reserve(list.contacts.size());
   for (const Contact& c : list.contacts) {
     last_.contact_ids.push_back(set_.ids()[c.particle]);
+    if (lists_parcels_) last_.parcels.push_back(parcels_.parcel(set_, c.particle));
     counts[c.particle] += counts[c.particle] == UINT32_MAX ? 0 : 1;
     const WallHit& wall = list.walls_of(c).front();
     last_.contact_sources.push_back(environment_.map().source(wall.face.cell));
@@ -237,7 +252,8 @@ void ParticleSystem::count_contacts() {
     const bool is_last = &c == &list.contacts.back() || (&c)[1].particle != c.particle;
     const ParticleStatus end = set_.statuses()[c.particle];
     if (!is_last || end == ParticleStatus::alive) continue;  // a stuck particle has no contacts after this
-    if (tally_ != nullptr && end != ParticleStatus::escaped) tally_->deposit(wall.face.cell);
+    if (tally_ != nullptr && end != ParticleStatus::escaped)
+      tally_->deposit(wall.face.cell, parcels_.number(set_, c.particle));
     ++(end == ParticleStatus::escaped ? totals_.escaped_by_patch : totals_.deposited_by_patch)[wall.patch.value];
   }
 }
@@ -262,7 +278,8 @@ void ParticleSystem::remove_gone(std::span<const std::uint8_t> departed) {
     while (next < contacts.size() && contacts[next].particle <= i) ++next;
     last_.left.push_back({ids[i], statuses[i], set_.states[i].position, next - 1});
     if (tally_ != nullptr)
-      tally_->take_back(set_.states[i].cell, (1.0 - contacts[next - 1].time_of_impact) * options_.substeps);
+      tally_->take_back(set_.states[i].cell, (1.0 - contacts[next - 1].time_of_impact) * options_.substeps *
+                                                 static_cast<double>(parcels_.number(set_, i)));
     ++(statuses[i] == ParticleStatus::absorbed ? absorbed : last_.escaped);
     gone_.add(ids[i], whole_state(i), set_.velocities()[i], static_cast<std::uint64_t>(statuses[i]));
   }
@@ -289,7 +306,7 @@ void ParticleSystem::remove_absorbed(const UpdateReport& report, std::span<const
     if (p.outcome != OrphanPolicy::absorb) continue;
     marks[p.particle] = 1;
     ++absorbed;
-    edited_.absorbed.push_back(set_.ids()[p.particle]);
+    edited_.absorbed.push_back({set_.ids()[p.particle], parcels_.number(set_, p.particle)});
     gone_.add(set_.ids()[p.particle], before[p.particle], set_.velocities()[p.particle],
               static_cast<std::uint64_t>(ParticleStatus::absorbed));
   }

@@ -14,6 +14,7 @@
 #include "simulation/aiming.hpp"
 #include "simulation/component.hpp"
 #include "simulation/moving_vertices.hpp"
+#include "simulation/parcels.hpp"
 #include "simulation/particle_set.hpp"
 #include "simulation/particle_share.hpp"
 #include "simulation/sampled_fields.hpp"
@@ -35,10 +36,13 @@ class ParticleSystem final : public SimulationComponent {
 
   [[nodiscard]] Aiming& aiming() { return aiming_; }
   [[nodiscard]] SampledFields& sampled() { return sampled_; }
-  /// Gives all particles the values of the sampled arrays at their places now.
-  void take_samples() { sampled_.take(set_, motion_.time()); }
+  /// Gives all particles the values of the sampled arrays at their places now, and adds their integrals over a duration.
+  void take_samples(double duration = 0.0) { sampled_.take(set_, motion_.time(), duration); }
   /// Steps are added to it; null: to none.
   void set_tally(CellTally* tally) { tally_ = tally; }
+  [[nodiscard]] const Parcels& parcels() const { return parcels_; }
+  /// Whether steps list the parcels of contacts.
+  void list_parcels(bool listed) { lists_parcels_ = listed; }
   /// The environment is a part of one that ranks share by cells. Precondition: there are no particles.
   void set_part(PartEnvironment& part);
   [[nodiscard]] std::optional<SampledPart> sampled_part() const;
@@ -73,8 +77,12 @@ class ParticleSystem final : public SimulationComponent {
   /// The effects of the last edit.
   struct Edited {
     UpdateReport report;
-    std::vector<std::uint64_t> absorbed;  ///< ids
-    std::uint64_t since_step = 0;         ///< absorbed by all edits since the last step
+    struct Absorbed {
+      std::uint64_t id = 0;
+      std::uint64_t number = 1;  ///< of particles that it stands for
+    };
+    std::vector<Absorbed> absorbed;
+    std::uint64_t since_step = 0;  ///< absorbed by all edits since the last step
   };
   [[nodiscard]] const Edited& edited() const { return edited_; }
   [[nodiscard]] const MovingVertices& motion() const { return motion_; }
@@ -89,6 +97,7 @@ class ParticleSystem final : public SimulationComponent {
   [[nodiscard]] bool collides() const { return options_.collisions && set_.spheres > 0; }
   void move_vertices();
   void advance_segment(unsigned segment, std::vector<std::uint8_t>& departed);
+  [[nodiscard]] ContactCallback answer(const Acceleration& acceleration);
   [[nodiscard]] ContactCallback response(double dt);
   void count_contacts();
   void mark_held();
@@ -110,9 +119,11 @@ class ParticleSystem final : public SimulationComponent {
   MovingVertices& motion_;
   SimulationOptions options_;
   CellTally* tally_ = nullptr;
+  bool lists_parcels_ = false;
   PartEnvironment* part_ = nullptr;  // none: the environment is whole
   WallResponses responses_;
   ParticleSet set_;
+  Parcels parcels_;
   Aiming aiming_;
   SampledFields sampled_;
   SphereStepper stepper_;

@@ -111,7 +111,8 @@ void ParticleSystem::inject(Inlets& inlets) {
     last_.injected += in.count;
   });
   totals_.injected += last_.injected;
-  if (aiming_.eddies().act()) take_samples();  // of new ones, and after an edit
+  if (aiming_.eddies().act() || sampled_.integrate() || !options_.diffusivity.empty())
+    take_samples();  // of new ones, and after an edit
 }
 
 }  // namespace dartcast

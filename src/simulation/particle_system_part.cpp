@@ -54,7 +54,7 @@ ParticleState ParticleSystem::whole_state(std::size_t i) const {
 StepReport ParticleSystem::advance_in_part(const Acceleration& acceleration, std::vector<std::uint8_t>& departed) {
   const ContactCallback respond = [&](const Contact& c, std::span<const WallHit> walls,
                                       std::span<const WallHit> earlier) {
-    return respond_with(responses_, set_.velocities(), set_.statuses(), options_.dt, acceleration)(c, walls, earlier);
+    return answer(acceleration)(c, walls, earlier);
   };
   TableTravel data(set_.table, set_.table.contact_count);
   return part_->advance(set_.states, aiming_.targets(), respond, options_.step, data, departed);

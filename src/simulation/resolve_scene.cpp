@@ -1,5 +1,6 @@
 // Looks up in a mesh what a scene names: arrays, patches and regions.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
@@ -12,6 +13,7 @@
 #include "dartcast/mesh_selection.hpp"
 #include "simulation/eddies.hpp"
 #include "simulation/mesh_arrays.hpp"
+#include "simulation/parcels.hpp"
 #include "simulation/resolved_scene.hpp"
 #include "simulation/scene_environment.hpp"
 
@@ -26,6 +28,7 @@ SimulationOptions options_of(const Scene& scene, Ranks* ranks) {
   options.drag = scene.motion.drag;
   options.forces = scene.motion.forces;
   options.diffusion = scene.motion.diffusion;
+  options.diffusivity = scene.motion.diffusivity;
   options.turbulence = scene.motion.turbulence;
   options.response = scene.contact.general;
   options.patch_responses = scene.contact.by_patch;
@@ -50,6 +53,20 @@ std::optional<VectorField> field_of(const FieldScene& scene, const std::string& 
   return VectorField(complex, std::move(samples), scene.frame);
 }
 
+void add_integral(std::vector<SampledField>& sampled, const std::string& name, const std::string& component) {
+  std::string known;
+  for (SampledField& f : sampled) {
+    const auto found = std::find(f.names.begin(), f.names.end(), component);
+    if (found != f.names.end()) {
+      f.integrals.push_back({name, static_cast<std::size_t>(found - f.names.begin())});
+      return;
+    }
+    known += fmt::format("{}{}", known.empty() ? "" : ", ", fmt::join(f.names, ", "));
+  }
+  throw InvalidArgument(fmt::format("the integral {} is of {}, which is not sampled; sampled are: {}", name, component,
+                                    known.empty() ? "none" : known));
+}
+
 std::vector<SampledField> sampled_of(const MotionScene& scene, const MeshData& mesh, const CellComplex& complex) {
   if (!scene.sample.empty() && !scene.field.files.empty())
     throw InvalidArgument("the sampled arrays' files have not been read; call load_scene_files() first");
@@ -64,6 +81,7 @@ std::vector<SampledField> sampled_of(const MotionScene& scene, const MeshData& m
       sampled.push_back({VectorField(complex, std::move(array.parts[part])), std::move(names)});
     }
   }
+  for (const auto& [name, component] : scene.integrate) add_integral(sampled, name, component);
   return sampled;
 }
 
@@ -155,6 +173,11 @@ void resolve_on(const MeshData& mesh, const Scene& scene, Threads threads, Resol
     resolved.options.user_data.insert(resolved.options.user_data.end(), f.names.begin(), f.names.end());
   if (!scene.motion.turbulence.k.empty())
     resolved.options.user_data.insert(resolved.options.user_data.end(), eddy_numbers.begin(), eddy_numbers.end());
+  for (const auto& [name, component] : scene.motion.integrate) resolved.options.user_data.push_back(name);
+  const std::vector<std::string>& names = scene.user_data;
+  if (std::find(names.begin(), names.end(), parcel_number) == names.end() &&
+      std::any_of(scene.particles.begin(), scene.particles.end(), [](const auto& group) { return group.number != 1; }))
+    resolved.options.user_data.emplace_back(parcel_number);
   resolved.events = events_of(scene, mesh, complex.map());
 }
 

@@ -4,27 +4,50 @@
 #include <algorithm>
 #include <array>
 #include <span>
+#include <vector>
 
 #include "base/parallel.hpp"
 #include "complex/simplex.hpp"
 
 namespace dartcast {
 
-void SampledFields::take(ParticleSet& set, double time) {
+std::size_t SampledFields::column(const std::string& name) const {
+  return static_cast<std::size_t>(std::find(data_names_.begin(), data_names_.end(), name) - data_names_.begin());
+}
+
+SampledFields::Component SampledFields::component(const std::string& name) const {
+  for (const SampledField& f : fields_) {
+    const auto found = std::find(f.names.begin(), f.names.end(), name);
+    if (found != f.names.end()) return {&f.field, static_cast<std::size_t>(found - f.names.begin())};
+  }
+  return {};
+}
+
+void SampledFields::take(ParticleSet& set, double time, double duration) {
   constexpr std::size_t grain = 512;
   const CellComplex& complex = environment_.complex();
   for (SampledField& f : fields_) {
     f.field.set_times(std::span(&time, 1), complex, environment_.threads());
-    const auto column = static_cast<std::size_t>(std::find(data_names_.begin(), data_names_.end(), f.names.front()) -
-                                                 data_names_.begin());
+    const std::size_t values = column(f.names.front());
+    std::vector<std::size_t> sums;
+    for (const SampledField::Integral& sum : f.integrals) sums.push_back(column(sum.name));
     parallel_for(set.states.size(), grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const ParticleState& s = set.states[i];
-        if (s.held) continue;
-        const Corners now = complex.corners(s.at());
-        const Vec3 v = f.field.at(complex, s.at(), detail::barycentric(now, s.position), now);
-        const std::array<double, 3> values = {v.x, v.y, v.z};
-        std::copy_n(values.begin(), f.names.size(), set.user_data(i).begin() + static_cast<std::ptrdiff_t>(column));
+        const std::span<double> data = set.user_data(i);
+        const std::span<double> now = data.subspan(values, f.names.size());
+        std::array<double, 3> before{};
+        std::copy(now.begin(), now.end(), before.begin());
+        if (!s.held) {
+          const Corners corners = complex.corners(s.at());
+          const Vec3 v = f.field.at(complex, s.at(), detail::barycentric(corners, s.position), corners);
+          const std::array<double, 3> found = {v.x, v.y, v.z};
+          std::copy_n(found.begin(), now.size(), now.begin());
+        }
+        for (std::size_t k = 0; k < sums.size(); ++k) {
+          const std::size_t component = f.integrals[k].component;
+          data[sums[k]] += 0.5 * duration * (before[component] + now[component]);
+        }
       }
     });
   }

@@ -1,6 +1,7 @@
 // Arrays whose values particles take at their places, as numbers of user data. Not installed.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -17,6 +18,12 @@ namespace dartcast {
 struct SampledField {
   VectorField field;
   std::vector<std::string> names;  ///< of its components' numbers
+  /// A number that a component is integrated in.
+  struct Integral {
+    std::string name;
+    std::size_t component = 0;
+  };
+  std::vector<Integral> integrals = {};
 };
 
 class SampledFields {
@@ -29,21 +36,27 @@ class SampledFields {
     });
   }
 
-  /// Numbers of user data that they take, behind all others.
-  [[nodiscard]] std::size_t size() const {
-    std::size_t count = 0;
-    for (const SampledField& f : fields_) count += f.names.size();
-    return count;
+  struct Component {
+    const VectorField* field = nullptr;  ///< null: there is none
+    std::size_t number = 0;
+  };
+  /// The component of this name.
+  [[nodiscard]] Component component(const std::string& name) const;
+  [[nodiscard]] bool integrate() const {
+    return std::any_of(fields_.begin(), fields_.end(), [](const SampledField& f) { return !f.integrals.empty(); });
   }
   void set(std::vector<SampledField> fields) { fields_ = std::move(fields); }
   /// As VectorField::hold().
   void hold(double begin, double end) {
     for (SampledField& f : fields_) f.field.hold(begin, end);
   }
-  /// Writes the values at the particles' places now. Those that are held keep what they have.
-  void take(ParticleSet& set, double time);
+  /// Writes the values at the particles' places now, and adds their integrals over the `duration` before. Those that are
+  /// held keep their values.
+  void take(ParticleSet& set, double time, double duration);
 
  private:
+  [[nodiscard]] std::size_t column(const std::string& name) const;
+
   const Environment& environment_;
   const std::vector<std::string>& data_names_;
   std::vector<SampledField> fields_;

@@ -111,13 +111,13 @@ std::vector<PlaneCrossing> find_crossings(std::span<const SectionPlane> planes, 
 
 // A bin is the first one's width times a power of two. So bins are joined pair by pair, and the order of adding does
 // not matter.
-void ResidenceTimes::add(double seconds, double first_bin) {
+void ResidenceTimes::add(double seconds, double first_bin, std::uint64_t number) {
   if (count == 0) {
     bin = first_bin;
     least = seconds;
   }
-  ++count;
-  sum += seconds;
+  count += number;
+  sum += static_cast<double>(number) * seconds;
   least = std::min(least, seconds);
   most = std::max(most, seconds);
   double place = std::floor(seconds / first_bin) * (first_bin / bin);
@@ -126,7 +126,7 @@ void ResidenceTimes::add(double seconds, double first_bin) {
     bin *= 2.0;
     place *= 0.5;
   }
-  ++bins[static_cast<std::size_t>(place)];
+  bins[static_cast<std::size_t>(place)] += number;
 }
 
 }  // namespace dartcast

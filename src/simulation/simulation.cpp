@@ -88,6 +88,7 @@ void Simulation::set_statistics(const StatisticsOptions& options) {
         "particles");
   parts_->statistics.set_options(options);
   parts_->particles.set_tally(parts_->statistics.tally());
+  parts_->particles.list_parcels(parts_->statistics.lists_parcels());
 }
 const StatisticsOptions& Simulation::statistics_options() const { return parts_->statistics.options(); }
 const Statistics& Simulation::statistics() const { return parts_->statistics.statistics(); }

@@ -57,7 +57,14 @@ struct Simulation::Parts {
       group.material.diameter = group.sizes->diameters.front();
     if (group.interception) group.radius = 0.5 * group.material.diameter;
     std::vector<double>& data = group.user_data;
-    if (!data.empty()) data.resize(data.size() + particles.sampled().size() + particles.aiming().numbers_of_eddies());
+    const std::size_t given = data.size();
+    if (given > 0 || group.number != 1) data.resize(particles.options().user_data.size());
+    if (group.number == 1) return group;
+    const Parcels& parcels = particles.parcels();
+    if (!parcels.exist() || parcels.column() < given)
+      throw InvalidArgument(
+          "simulation: the number of a group is a number of user data: name it there, and give its value once");
+    data[parcels.column()] = static_cast<double>(group.number);
     return group;
   }
 

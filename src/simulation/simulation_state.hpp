@@ -57,6 +57,7 @@ struct SolidsState {
 /// The statistics so far.
 struct StatisticsState {
   bool has_hits = false;
+  bool has_impacts = false;
   std::vector<FaceHits> hits;
   std::vector<std::uint64_t> ended_hits;
   bool observes_motion = false;  ///< what follows is kept

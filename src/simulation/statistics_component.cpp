@@ -12,6 +12,7 @@
 #include "dartcast/combinatorial_map.hpp"
 #include "dartcast/error.hpp"
 #include "simulation/gathered_step.hpp"
+#include "simulation/parcels.hpp"
 #include "simulation/timer.hpp"
 
 namespace dartcast {
@@ -32,6 +33,7 @@ std::vector<Vec3> positions_of(const Particles& particles) {
 void StatisticsComponent::set_options(const StatisticsOptions& options) {
   dartcast::check(options.planes);
   check_cell_quantities(options.cells);
+  if (options.impacts && !options.hits) throw InvalidArgument("statistics: impacts are sums of hits: set hits, too");
   options_ = options;
   std::sort(options_.pathlines_of.begin(), options_.pathlines_of.end());
   statistics_ = {};
@@ -49,6 +51,7 @@ void StatisticsComponent::note_start() {
   const std::span<const Vec3> velocities = particles_.set().velocities();
   ids_.assign(ids.begin(), ids.end());
   before_ = positions_of(particles_.set().states);
+  numbers_ = particles_.parcels().numbers(particles_.set());
   first_new_ = static_cast<std::size_t>(std::lower_bound(ids.begin(), ids.end(), starts_.next_id()) - ids.begin());
   start_velocities_.assign(velocities.begin() + static_cast<std::ptrdiff_t>(first_new_), velocities.end());
   starts_.add(particles_.set().next_id, particles_.motion().time());
@@ -64,15 +67,20 @@ void StatisticsComponent::step(double begin) {
 
 void StatisticsComponent::count() {
   const ScopeTimer timer(statistics_.seconds);
-  if (options_.hits) statistics_.hits.add(particles_.environment(), particles_.last_step().report.contacts);
+  const SimulationStep& step = particles_.last_step();
+  if (options_.hits) {
+    std::vector<Impact> impacts;
+    if (!step.parcels.empty()) impacts = impacts_of(step, particles_.options());
+    statistics_.hits.add(particles_.environment(), step.report.contacts, impacts);
+  }
   const double dt = particles_.options().dt;
   for (const PlanePassage& passage : statistics_.passages) {
     PlaneTotals& totals = statistics_.planes[passage.crossing.plane];
-    (passage.crossing.forward ? totals.forward : totals.backward).add(passage.age, dt);
+    (passage.crossing.forward ? totals.forward : totals.backward).add(passage.age, dt, passage.number);
   }
   for (const Leaving& p : leavings_) {
     LeaveTotals& totals = statistics_.left[p.patch.value];
-    (p.status == ParticleStatus::escaped ? totals.escaped : totals.absorbed).add(p.age, dt);
+    (p.status == ParticleStatus::escaped ? totals.escaped : totals.absorbed).add(p.age, dt, p.number);
   }
 }
 
@@ -106,7 +114,7 @@ void StatisticsComponent::find_passages(double begin) {
   statistics_.passages.clear();
   if (options_.planes.empty()) return;
   for (const PlaneCrossing& c : find_crossings(options_.planes, before_, after_, particles_.environment().threads())) {
-    PlanePassage passage{c, ids_[c.particle], begin + c.share * dt, 0.0};
+    PlanePassage passage{c, ids_[c.particle], begin + c.share * dt, 0.0, number_of(c.particle)};
     passage.age = passage.time - starts_.of(passage.id);
     statistics_.passages.push_back(passage);
   }
@@ -120,7 +128,8 @@ void StatisticsComponent::find_leavings(double begin) {
   for (const LeftParticle& p : particles_.last_step().left) {
     const Contact& last = list.contacts[p.contact];
     const double time = begin + last.time_of_impact * dt;
-    leavings_.push_back({p.id, p.status, list.walls_of(last).front().patch, time - starts_.of(p.id)});
+    const auto i = static_cast<std::size_t>(std::lower_bound(ids_.begin(), ids_.end(), p.id) - ids_.begin());
+    leavings_.push_back({p.id, p.status, list.walls_of(last).front().patch, time - starts_.of(p.id), number_of(i)});
   }
 }
 
@@ -173,10 +182,10 @@ void StatisticsComponent::update_after_edit(const ComplexEditReport& edit, Orpha
   if (!options_.residence) return;
   starts_.add(particles_.set().next_id, particles_.motion().time());
   std::vector<Leaving> absorbed;
-  for (const std::uint64_t id : particles_.edited().absorbed)
-    absorbed.push_back({id, ParticleStatus::absorbed, {}, particles_.motion().time() - starts_.of(id)});
+  for (const auto& [id, number] : particles_.edited().absorbed)
+    absorbed.push_back({id, ParticleStatus::absorbed, {}, particles_.motion().time() - starts_.of(id), number});
   for (const Leaving& p : gathered_by_id(particles_.options().ranks, std::move(absorbed)))
-    statistics_.absorbed_by_edits.add(p.age, particles_.options().dt);
+    statistics_.absorbed_by_edits.add(p.age, particles_.options().dt, p.number);
 }
 
 // The sums of all ranks.
@@ -195,15 +204,16 @@ Audit StatisticsComponent::audit() const {
 
 void StatisticsComponent::check(const SimulationState& state) const {
   const StatisticsState& saved = state.statistics;
-  if (saved.has_hits != options_.hits || saved.observes_motion != observes_motion() ||
-      saved.planes.size() != options_.planes.size() || saved.left.size() != statistics_.left.size() ||
-      saved.cells.empty() == tally_.has_value())
+  if (saved.has_hits != options_.hits || saved.has_impacts != options_.impacts ||
+      saved.observes_motion != observes_motion() || saved.planes.size() != options_.planes.size() ||
+      saved.left.size() != statistics_.left.size() || saved.cells.empty() == tally_.has_value())
     throw InvalidArgument("simulation: the checkpoint has other statistics: set those that it was saved with");
 }
 
 void StatisticsComponent::save(SimulationState& state) const {
   StatisticsState& saved = state.statistics;
   saved.has_hits = options_.hits;
+  saved.has_impacts = options_.impacts;
   saved.hits = statistics_.hits.faces();
   saved.ended_hits = statistics_.hits.ended_by_patch();
   saved.observes_motion = observes_motion();

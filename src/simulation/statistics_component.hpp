@@ -19,6 +19,7 @@ struct Leaving {
   ParticleStatus status = ParticleStatus::escaped;  // or absorbed
   Patch patch;                                      // where it left
   double age = 0.0;                                 // s
+  std::uint64_t number = 1;                         // of particles that it stands for
 };
 
 /// It steps after the particles and before edits that end a step: contacts then still name cells that exist. A step
@@ -31,6 +32,10 @@ class StatisticsComponent final : public SimulationComponent {
   void set_options(const StatisticsOptions& options);
   [[nodiscard]] const StatisticsOptions& options() const { return options_; }
   [[nodiscard]] const Statistics& statistics() const { return statistics_; }
+  /// Whether steps list parcels.
+  [[nodiscard]] bool lists_parcels() const {
+    return options_.hits && (options_.impacts || particles_.parcels().exist());
+  }
   /// None if no quantity is kept by cell.
   [[nodiscard]] CellTally* tally() { return tally_ ? &*tally_ : nullptr; }
   [[nodiscard]] double& seconds() { return statistics_.seconds; }
@@ -56,6 +61,7 @@ class StatisticsComponent final : public SimulationComponent {
   [[nodiscard]] bool observes_motion() const {
     return options_.residence || !options_.planes.empty() || options_.pathlines();
   }
+  [[nodiscard]] std::uint64_t number_of(std::size_t i) const { return numbers_.empty() ? 1 : numbers_[i]; }
   void keep_on_first(std::vector<std::uint64_t> words);
   void find_ends();
   void find_passages(double begin);
@@ -73,6 +79,7 @@ class StatisticsComponent final : public SimulationComponent {
   // The particles of the step, as they were after the injection.
   std::vector<std::uint64_t> ids_;
   std::vector<Vec3> before_;
+  std::vector<std::uint64_t> numbers_;  // empty: each stands for itself
   std::size_t first_new_ = 0;           // those from here on take their first step
   std::vector<Vec3> start_velocities_;  // of these
   std::vector<Vec3> after_;

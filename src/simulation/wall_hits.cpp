@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <map>
 #include <span>
@@ -16,6 +17,11 @@
 namespace dartcast {
 
 namespace {
+
+// The sines of 10, 20, ... 80 degrees.
+constexpr std::array<double, 8> sines_of_tens = {0.17364817766693033, 0.3420201433256687, 0.5,
+                                                 0.6427876096865393,  0.766044443118978,  0.8660254037844386,
+                                                 0.9396926207859083,  0.984807753012208};
 
 bool is_wall_of_free_cell(const CombinatorialMap& map, CellFace f) {
   if (!map.contains(f.cell)) return false;
@@ -61,23 +67,46 @@ class LastingCorners {
   std::unordered_set<std::uint32_t> passing_;  // they may lie on edges of faces that continue
 };
 
+void add_to(FaceHits& sums, const FaceHits& more) {
+  sums.hits += more.hits;
+  sums.mass += more.mass;
+  sums.energy += more.energy;
+  for (std::size_t i = 0; i < sums.angles.size(); ++i) sums.angles[i] += more.angles[i];
+}
+
 }  // namespace
 
-void WallHits::add(const Environment& environment, const ContactList& contacts) {
-  for (const Contact& c : contacts.contacts) ++record(environment, contacts.walls_of(c).front().face).hits;
+void WallHits::add(const Environment& environment, const ContactList& contacts, std::span<const Impact> impacts) {
+  if (!impacts.empty() && impacts.size() != contacts.contacts.size())
+    throw InvalidArgument(
+        fmt::format("wall hits: {} impacts for {} contacts", impacts.size(), contacts.contacts.size()));
+  for (std::size_t i = 0; i < contacts.contacts.size(); ++i) {
+    FaceHits& sums = record(environment, contacts.walls_of(contacts.contacts[i]).front().face).sums;
+    if (impacts.empty()) {
+      ++sums.hits;
+      continue;
+    }
+    const Impact& impact = impacts[i];
+    sums.hits += impact.number;
+    sums.mass += impact.mass;
+    sums.energy += impact.energy;
+    const auto angle = std::upper_bound(sines_of_tens.begin(), sines_of_tens.end(), impact.sine);
+    sums.angles[static_cast<std::size_t>(angle - sines_of_tens.begin())] += impact.number;
+  }
 }
 
 WallHits::Record& WallHits::record(const Environment& environment, CellFace face) {
   std::vector<Record>& records = cells_[face.cell.value];
-  const auto found = std::find_if(records.begin(), records.end(), [&](const Record& r) { return r.face == face.face; });
+  const auto found = std::find_if(records.begin(), records.end(), [&](const Record& r) { return r.sums.face == face; });
   if (found != records.end()) return *found;
   const CombinatorialMap& map = environment.map();
-  return records.emplace_back(Record{face.face, map.patch(face), 0, corners_of(map.view(face.cell), face.face)});
+  return records.emplace_back(Record{{face, map.patch(face)}, corners_of(map.view(face.cell), face.face)});
 }
 
 void WallHits::end(const Record& record) {
-  if (ended_.size() <= record.patch.value) ended_.resize(record.patch.value + std::size_t{1});
-  ended_[record.patch.value] += record.hits;
+  const FaceHits& sums = record.sums;
+  if (ended_.size() <= sums.patch.value) ended_.resize(sums.patch.value + std::size_t{1});
+  ended_[sums.patch.value] += sums.hits;
 }
 
 std::vector<WallHits::Record> WallHits::take_removed(const Environment& environment) {
@@ -95,7 +124,7 @@ void WallHits::end_former_walls(const Environment& environment, Cell cell) {
   const auto found = cells_.find(cell.value);
   if (found == cells_.end()) return;
   std::erase_if(found->second, [&](const Record& r) {
-    const bool ends = !is_wall_of_free_cell(environment.map(), {cell, r.face});
+    const bool ends = !is_wall_of_free_cell(environment.map(), r.sums.face);
     if (ends) end(r);
     return ends;
   });
@@ -123,23 +152,23 @@ void WallHits::update_after_edit(const Environment& environment) {
     if (found == walls.end())
       end(r);
     else
-      record(environment, found->second).hits += r.hits;
+      add_to(record(environment, found->second).sums, r.sums);
   }
 }
 
-std::uint64_t WallHits::of(CellFace face) const {
+FaceHits WallHits::at(CellFace face) const {
   const auto found = cells_.find(face.cell.value);
-  if (found == cells_.end()) return 0;
+  if (found == cells_.end()) return {face, {}};
   for (const Record& r : found->second) {
-    if (r.face == face.face) return r.hits;
+    if (r.sums.face == face) return r.sums;
   }
-  return 0;
+  return {face, {}};
 }
 
 std::vector<FaceHits> WallHits::faces() const {
   std::vector<FaceHits> all;
   for (const auto& [cell, records] : cells_) {
-    for (const Record& r : records) all.push_back({{Cell{cell}, r.face}, r.patch, r.hits});
+    for (const Record& r : records) all.push_back(r.sums);
   }
   std::sort(all.begin(), all.end(), [](const FaceHits& a, const FaceHits& b) { return a.face < b.face; });
   return all;
@@ -149,7 +178,7 @@ std::vector<std::uint64_t> WallHits::by_patch(const Environment& environment) co
   std::vector<std::uint64_t> sums = ended_;
   sums.resize(environment.map().patch_names().size());
   for (const auto& [cell, records] : cells_) {
-    for (const Record& r : records) sums[r.patch.value] += r.hits;
+    for (const Record& r : records) sums[r.sums.patch.value] += r.sums.hits;
   }
   return sums;
 }
@@ -164,7 +193,12 @@ void WallHits::restore(const Environment& environment, const std::vector<FaceHit
           f.face.face, f.face.cell.value));
   }
   cells_.clear();
-  for (const FaceHits& f : faces) record(environment, f.face).hits = f.hits;
+  for (const FaceHits& f : faces) {
+    FaceHits& sums = record(environment, f.face).sums;
+    const Patch patch = sums.patch;
+    sums = f;
+    sums.patch = patch;
+  }
   ended_ = std::move(ended);
 }
 

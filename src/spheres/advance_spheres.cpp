@@ -10,6 +10,7 @@
 #include "dartcast/spheres.hpp"
 #include "spheres/sphere_run.hpp"
 #include "tracking/representable_point.hpp"
+#include "tracking/tallied.hpp"
 #include "tracking/tally_writer.hpp"
 
 namespace dartcast {
@@ -102,12 +103,13 @@ class SphereTally {
     before_ = particles;
     moved_ = environment.awaits_advance(particles);
     if (respond) former_ = *tally_;
-    environment.tally_points(radii);
+    tallied_ = environment.set_tallied({});
+    environment.set_tallied({tally_, tallied_.numbers, radii});
   }
   SphereTally(const SphereTally&) = delete;
   SphereTally& operator=(const SphereTally&) = delete;
   ~SphereTally() {
-    if (tally_ != nullptr) environment_.set_tally(tally_);
+    if (tally_ != nullptr) environment_.set_tallied(tallied_);
   }
 
   void end_first_round() const { environment_.set_tally(nullptr); }
@@ -120,6 +122,7 @@ class SphereTally {
     CentreContacts contacts(list);
     for (std::uint32_t i = 0; i < after.size(); ++i) {
       if (radii_[i] == 0.0) continue;
+      if (!tallied_.numbers.empty()) writer.set_number(tallied_.numbers[i]);
       const Contact* const met = contacts.of(i).contact;
       stepper.tally_straight(before_[i], before_.held_weights(i), after[i], met != nullptr ? met->time_of_impact : 1.0,
                              writer);
@@ -136,6 +139,7 @@ class SphereTally {
   CellTally* tally_;
   std::span<const double> radii_;
   const StepOptions& options_;
+  detail::Tallied tallied_;  // of the caller
   Particles before_;
   std::optional<CellTally> former_;
   bool moved_ = false;

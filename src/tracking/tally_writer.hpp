@@ -20,11 +20,16 @@ inline std::uint64_t tally_units(double x) {
   return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::min(x * 0x1p+62, most)));
 }
 
-inline void add_to(TallySum& sum, std::uint64_t units) {
-  sum.high += units >> 62U;
-  const std::uint64_t part = units << 2U;
-  sum.low += part;
-  sum.high += sum.low < part ? 1 : 0;
+/// So many times these units.
+inline TallySum tally_sum(std::uint64_t units, std::uint64_t number) {
+  __extension__ using Wide = unsigned __int128;
+  const Wide sum = (Wide{units} << 2U) * number;
+  return {static_cast<std::uint64_t>(sum), static_cast<std::uint64_t>(sum >> 64U)};
+}
+
+inline void add_to(TallySum& sum, const TallySum& more) {
+  sum.low += more.low;
+  sum.high += more.high + (sum.low < more.low ? 1 : 0);
 }
 
 /// Steps of consecutive particles, in one thread. Others may write into the same tally at the same time. It is a driver of
@@ -42,14 +47,17 @@ class TallyWriter {
     add_shared(tally_.time_, time_);
   }
 
+  /// The next steps are added so many times.
+  void set_number(std::uint64_t number) { number_ = number; }
+
   /// A whole step within one simplex.
   void stay(Cell cell, double length) {
-    const std::uint64_t units = tally_units(length * per_unit_);
+    const TallySum sum = tally_sum(tally_units(length * per_unit_), number_);
     CellTally::Sums& sums = tally_.of(cell);
-    add_shared(sums.length, units);
-    std::atomic_ref(sums.time.high).fetch_add(1, std::memory_order_relaxed);
-    add_to(length_, units);
-    ++time_.high;
+    add_shared(sums.length, sum);
+    std::atomic_ref(sums.time.high).fetch_add(number_, std::memory_order_relaxed);
+    add_to(length_, sum);
+    time_.high += number_;
   }
 
   /// A step of this particle begins. `state` is read as it changes.
@@ -61,7 +69,7 @@ class TallyWriter {
   void finish() {
     come_to(state_->cell);
     spend(tally_one);
-    ++time_.high;
+    time_.high += number_;
   }
   /// One whole walk, at rest, that arrives.
   template <std::size_t N>
@@ -98,15 +106,10 @@ class TallyWriter {
   void put(const ParticleState& /*state*/, double time) { spend(tally_units(time)); }
 
  private:
-  static void add_shared(TallySum& sum, std::uint64_t units) {
-    const std::uint64_t part = units << 2U;
-    const std::uint64_t low = std::atomic_ref(sum.low).fetch_add(part, std::memory_order_relaxed);
-    const std::uint64_t high = (units >> 62U) + (low + part < part ? 1 : 0);
-    if (high != 0) std::atomic_ref(sum.high).fetch_add(high, std::memory_order_relaxed);
-  }
   static void add_shared(TallySum& sum, const TallySum& more) {
     const std::uint64_t low = std::atomic_ref(sum.low).fetch_add(more.low, std::memory_order_relaxed);
-    std::atomic_ref(sum.high).fetch_add(more.high + (low + more.low < more.low ? 1 : 0), std::memory_order_relaxed);
+    const std::uint64_t high = more.high + (low + more.low < more.low ? 1 : 0);
+    if (high != 0) std::atomic_ref(sum.high).fetch_add(high, std::memory_order_relaxed);
   }
 
   // Its start has these. Returns the length that has been walked.
@@ -126,16 +129,17 @@ class TallyWriter {
   void come_to(Cell cell) {
     if (cell == cell_) return;
     cell_ = cell;
-    std::atomic_ref(tally_.of(cell).visits).fetch_add(1, std::memory_order_relaxed);
+    std::atomic_ref(tally_.of(cell).visits).fetch_add(number_, std::memory_order_relaxed);
   }
   void add_length(std::uint64_t units) {
-    add_shared(tally_.of(cell_).length, units);
-    add_to(length_, units);
+    const TallySum sum = tally_sum(units, number_);
+    add_shared(tally_.of(cell_).length, sum);
+    add_to(length_, sum);
   }
   // In the cell, up to this time. Rounded times of walks may fall.
   void spend(std::uint64_t until) {
     if (until <= spent_) return;
-    add_shared(tally_.of(cell_).time, until - spent_);
+    add_shared(tally_.of(cell_).time, tally_sum(until - spent_, number_));
     spent_ = until;
   }
 
@@ -143,7 +147,8 @@ class TallyWriter {
   double per_unit_;
   const ParticleState* state_ = nullptr;
   Cell cell_;
-  std::uint64_t spent_ = 0;          // of the step
+  std::uint64_t spent_ = 0;  // of the step
+  std::uint64_t number_ = 1;
   TallySum length_;                  // of all steps here
   TallySum time_;                    // likewise
   std::vector<PassedFacet> passed_;  // by a walk

@@ -545,31 +545,6 @@ TEST(EnvironmentHolds, ParticlesOfAnInvertedCellAreCarriedAlong) {
 
 // In the step that mends a vertex its old position is still no number: the wall's motion at a contact must not be one
 // either.
-// At its coordinates in the simplex, from the moment that the cell is valid again.
-TEST(EnvironmentHolds, WhatIsAddedToAnInvertedCell) {
-  const MeshData mesh = box(3);
-  Environment environment(mesh);
-  std::vector<Vec3> points = mesh.points;
-  for (const bool finite : {true, false}) {
-    points[0] = finite ? Vec3{2, 2, 2} : Vec3{std::nan(""), 0, 0};
-    environment.move(points);
-    const Cell cell = environment.validity().first.at(0).cell;
-    const Weights weights = {0.125, 0.25, 0.5, 0.125};
-    Particles particles;
-    std::uint16_t simplex = 0;
-    while (environment.add_at(particles, {cell, simplex}, weights)) ++simplex;
-    ASSERT_GT(simplex, 0U);
-    EXPECT_EQ(test::check_states(environment, particles), "");
-    EXPECT_TRUE(particles[0].held || particles[simplex - 1U].held);
-    EXPECT_THROW(environment.add_at(particles, {cell, 0}, {2, 0, 0, 0}), InvalidArgument);
-    environment.move(mesh.points);
-    const StepReport report = environment.advance(particles, positions_of(particles));
-    EXPECT_TRUE(report.held.empty());
-    EXPECT_EQ(test::check_states(environment, particles), "");
-    for (const ParticleState& s : particles.states()) EXPECT_FALSE(s.held);
-  }
-}
-
 TEST(EnvironmentHolds, AContactInTheStepThatMends) {
   const MeshData mesh = box(2);
   Environment environment(mesh);

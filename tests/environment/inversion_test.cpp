@@ -13,6 +13,7 @@
 #include "oracle/scenes.hpp"
 #include "support/meshes.hpp"
 #include "support/moving_simplex.hpp"
+#include "support/particle_checks.hpp"
 #include "support/tier.hpp"
 
 namespace dartcast::test::flattening_test {
@@ -88,6 +89,33 @@ TEST(SimplexInversion, APositionTooFewIsRefused) {
   next.pop_back();
   EXPECT_THROW((void)e.first_inversion(next), InvalidArgument);
   EXPECT_THROW(e.move_until_inverted(next), InvalidArgument);
+}
+
+// At its coordinates in the simplex, from the moment that the cell is valid again.
+TEST(SimplexInversion, WhatIsAddedToSuchACellWaits) {
+  const MeshData mesh = cubes(3);
+  Environment environment(mesh, Threads{1});
+  std::vector<Vec3> points = mesh.points;
+  for (const bool finite : {true, false}) {
+    points[0] = finite ? Vec3{2, 2, 2} : Vec3{std::nan(""), 0, 0};
+    environment.move(points);
+    const Cell cell = environment.validity().first.at(0).cell;
+    const Weights weights = {0.125, 0.25, 0.5, 0.125};
+    Particles particles;
+    std::uint16_t simplex = 0;
+    while (environment.add_at(particles, {cell, simplex}, weights)) ++simplex;
+    ASSERT_GT(simplex, 0U);
+    EXPECT_EQ(check_states(environment, particles), "");
+    EXPECT_TRUE(particles[0].held || particles[simplex - 1U].held);
+    EXPECT_THROW(environment.add_at(particles, {cell, 0}, {2, 0, 0, 0}), InvalidArgument);
+    environment.move(mesh.points);
+    std::vector<Vec3> places;
+    for (const ParticleState& s : particles.states()) places.push_back(s.position);
+    const StepReport report = environment.advance(particles, places);
+    EXPECT_TRUE(report.held.empty());
+    EXPECT_EQ(check_states(environment, particles), "");
+    for (const ParticleState& s : particles.states()) EXPECT_FALSE(s.held);
+  }
 }
 
 class FlatteningOf : public ::testing::TestWithParam<int> {};

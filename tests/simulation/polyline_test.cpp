@@ -5,6 +5,7 @@
 #include <array>
 #include <vector>
 
+#include "dartcast/combinatorial_map.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/generators.hpp"
 

@@ -264,6 +264,40 @@ double surviving(double behind, double dt_d) {
   return one * one * one;
 }
 
+// D grows fivefold along the box. Without the drift five times as many would be where D is low.
+TEST(Diffusion, InAFieldKeepsUniformCloudsUniform) {
+  Scene scene;
+  BoxOptions box;
+  box.cells = {8, 2, 2};
+  box.size = {4.0, 1.0, 1.0};
+  MeshData mesh = generate_box(box);
+  std::vector<double> d;
+  for (const Vec3& x : mesh.points) d.push_back(0.05 * (1.0 + x.x));
+  mesh.point_data.push_back({"D", 1, d});
+  scene.environment.mesh = mesh;
+  scene.contact.general = Reflect{1.0};
+  scene.motion.dt = 0.05;
+  scene.motion.sample = {"D"};
+  scene.motion.diffusivity = "D";
+  scene.particles.push_back({RandomParticles{4000}, {}, 0.0, {}});
+  std::vector<std::string> states;
+  for (const unsigned threads : {1U, 3U}) {
+    Simulation simulation(scene, Threads{threads});
+    for (int step = 0; step < 160; ++step) simulation.step();
+    states.push_back(simulation.state_hash().hex());
+    std::array<double, 8> count{};
+    for (const ParticleState& s : simulation.particles().states())
+      count[std::min<std::size_t>(7, static_cast<std::size_t>(2.0 * s.position.x))] += 1.0;
+    double chi_squared = 0.0;
+    for (const double n : count) chi_squared += (n - 500.0) * (n - 500.0) / 500.0;
+    EXPECT_LT(chi_squared, 24.3);  // 0.1% of such clouds are beyond it, with 7 degrees of freedom
+  }
+  EXPECT_EQ(states[0], states[1]);
+  scene.motion.diffusivity = "E";
+  Simulation unknown(scene);
+  test::expect_parts(test::refusal([&] { unknown.step(); }), {"diffusivity", "\"E\""});
+}
+
 // A walk in steps sees a wall later than the exact motion, as if it stood 0.5826 sqrt(2 D dt) behind (S. Asmussen,
 // P. Glynn, J. Pitman, 1995).
 TEST(Diffusion, SurvivalBetweenAbsorbingWallsIsThatOfTheSeries) {

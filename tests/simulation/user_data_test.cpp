@@ -1,11 +1,14 @@
 // Numbers that particles carry for their user: through removals, edits and checkpoints.
 #include <gtest/gtest.h>
 
+#include <string>
 #include <vector>
 
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
+#include "dartcast/scene.hpp"
 #include "dartcast/simulation.hpp"
+#include "support/expectations.hpp"
 
 namespace dartcast::user_data_test {
 
@@ -108,6 +111,56 @@ TEST(UserData, RefusesWhatDoesNotFit) {
   const std::vector<double> three(3);
   EXPECT_THROW(simulation.add_random(1, {}, 0.0, three), InvalidArgument);
   EXPECT_EQ(simulation.particles().size(), 0U);
+}
+
+// A value that is linear in space, on a straight way: the integral is that of the linear value, whatever the step.
+TEST(UserData, IntegratesSamples) {
+  Scene scene;
+  BoxOptions box;
+  box.cells = {6, 2, 2};
+  box.size = {6.0, 2.0, 2.0};
+  MeshData mesh = generate_box(box);
+  std::vector<double> flow;
+  std::vector<double> values;
+  for (const Vec3& x : mesh.points) {
+    flow.insert(flow.end(), {0.5, 0.0, 0.0});
+    values.insert(values.end(), {1.0, 2.0 * x.x});
+  }
+  mesh.point_data.push_back({"U", 3, flow});
+  mesh.point_data.push_back({"s", 2, values});
+  scene.environment.mesh = mesh;
+  scene.motion.dt = 0.25;
+  scene.motion.field.array = "U";
+  scene.motion.sample = {"s"};
+  scene.motion.integrate = {{"age", "s_0"}, {"dose", "s_1"}};
+  scene.user_data = {"own"};
+  scene.particles.push_back({RandomParticles{20}, {}, 0.0, {7.0}});
+  InletParticles inlet;
+  inlet.patch = "xmin";
+  inlet.rate = 4.0;
+  scene.particles.push_back({inlet, {}, 0.0, {7.0}});
+  Simulation simulation(scene, Threads{1});
+  EXPECT_EQ(simulation.options().user_data, (std::vector<std::string>{"own", "s_0", "s_1", "age", "dose"}));
+  const std::vector<ParticleState> before(simulation.particles().states().begin(),
+                                          simulation.particles().states().end());
+  for (int step = 0; step < 6; ++step) simulation.step();
+  Simulation resumed(scene, simulation.checkpoint(), Threads{1});
+  for (Simulation* s : {&simulation, &resumed}) {
+    s->step();
+    s->step();
+    ASSERT_GT(s->particles().size(), 25U);
+    for (std::size_t i = 0; i < s->particles().size(); ++i) {
+      const std::uint64_t id = s->ids()[i];
+      const double age = id < 20 ? 2.0 : 2.0 - 0.25 * static_cast<double>(id - 20);  // one a step
+      const double x = s->particles()[i].position.x;
+      const double start = x - 0.5 * age;
+      if (id < 20 && x > 5.9) continue;  // stopped at the wall
+      EXPECT_NEAR(s->user_data(i)[3], age, 1e-12);
+      EXPECT_NEAR(s->user_data(i)[4], (start + x) * age, 1e-12) << id;
+    }
+  }
+  scene.motion.integrate = {{"dose", "shear"}};
+  test::expect_parts(test::refusal([&] { Simulation bad(scene); }), {"dose", "shear", "s_0, s_1"});
 }
 
 }  // namespace dartcast::user_data_test

@@ -41,7 +41,7 @@ Plan::Plan(const Case& c, const SceneMesh& scene)
 
 bool Plan::has_inlet() const { return has(16) && !door_.empty(); }
 
-std::vector<double> Plan::user_data() const { return has(3) ? std::vector{1.5, -0.0} : std::vector<double>{}; }
+std::vector<double> Plan::user_data() const { return has(3) ? std::vector{1.5, -0.0, 3.0} : std::vector<double>{}; }
 
 Vec3 Plan::velocity() const {
   const Vec3 v = test::random_vector(*in(1), scene_.edge * 20.0);
@@ -90,7 +90,7 @@ SimulationOptions Plan::options(Ranks* ranks) const {
   o.gravity = Vec3{has(0) ? 3.0 : 0.0, has(1) ? -9.81 : 0.0, 0.0} * scene_.edge;
   o.drag = has(2) ? 2.0 : 0.0;
   o.response = response();
-  if (has(3)) o.user_data = {"first", "second"};
+  if (has(3)) o.user_data = {"first", "second", "number"};
   if (has_field() && has(13) && o.drag == 0.0 && !collides() && case_[Knob::simultaneous] == 0)
     o.integrator = Integrator::rk4;
   else if (has(17) && o.drag == 0.0 && !collides())
@@ -197,6 +197,7 @@ DeformationStep Plan::deformation() const {
 StatisticsOptions Plan::statistics() const {
   StatisticsOptions o;
   o.hits = true;
+  o.impacts = has(27);
   o.residence = true;
   o.planes = {{"middle", (scene_.low + scene_.high) * 0.5, {1.0, 0.5, 0.0}, 0.0}};
   o.pathlines_every = 3;

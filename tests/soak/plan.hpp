@@ -23,6 +23,7 @@ class Plan {
   [[nodiscard]] SimulationOptions options(Ranks* ranks) const;
   [[nodiscard]] bool collides() const { return has_spheres() && has(4); }
   [[nodiscard]] bool has_field() const { return has(12); }
+  [[nodiscard]] bool has_parcels() const { return has(3); }
   [[nodiscard]] bool has_inlet() const;
   /// Adds all parts. Those that find no place are left out, alike in all that are made so. `particles`: whether there are
   /// any; a checkpoint brings them.

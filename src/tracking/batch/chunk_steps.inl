@@ -68,7 +68,7 @@ void BatchStepper::step_chunk(const BatchScene& scene, const BatchParticles& par
     const SteppedParticle particle{states[i], particles.weights[begin + i], report.contacts, report.counters};
     if constexpr (tallied) {
       if (decider_ == nullptr && tally.counts(i)) {
-        stepper_.run_tallied(step, particle, tally.writer());
+        stepper_.run_tallied(step, particle, tally.writer(i));
         add(particles, step, steps);
         continue;
       }

@@ -17,15 +17,18 @@ class ChunkTally {
   void begin(const Tallied& tallied, std::span<const ParticleState> states, std::span<const Weights> weights,
              std::size_t first) {
     writer_.emplace(*tallied.tally);
-    radii_ = tallied.radii;
+    tallied_ = tallied;
     first_ = first;
     before_.assign(states.begin(), states.end());
     held_.assign(weights.begin(), weights.end());
   }
   /// Whether the chunk's step i is added.
-  [[nodiscard]] bool counts(std::size_t i) const { return radii_.empty() || radii_[first_ + i] == 0.0; }
-  /// For the steps that Stepper takes.
-  [[nodiscard]] TallyWriter& writer() { return *writer_; }
+  [[nodiscard]] bool counts(std::size_t i) const { return tallied_.radii.empty() || tallied_.radii[first_ + i] == 0.0; }
+  /// For the chunk's step i, which Stepper takes.
+  [[nodiscard]] TallyWriter& writer(std::size_t i) {
+    if (!tallied_.numbers.empty()) writer_->set_number(tallied_.numbers[first_ + i]);
+    return *writer_;
+  }
 
   /// After the steps. `contacts`: theirs.
   void add(const Stepper& stepper, const BatchSteps& steps, bool moved, bool decided,
@@ -37,13 +40,13 @@ class ChunkTally {
       const ParticleState& after = steps.states[i];
       if (steps.status[i] == step_complete) {
         if (!moved && before.at() == after.at())
-          writer_->stay(after.cell, norm(after.position - before.position));
+          writer(i).stay(after.cell, norm(after.position - before.position));
         else
-          stepper.tally_arrived(before, after, *writer_);
+          stepper.tally_arrived(before, after, writer(i));
       } else if (decided) {
         while (next < contacts.size() && contacts[next].particle < first_ + i) ++next;
         const bool met = next < contacts.size() && contacts[next].particle == first_ + i;
-        stepper.tally_straight(before, held_[i], after, met ? contacts[next].time_of_impact : 1.0, *writer_);
+        stepper.tally_straight(before, held_[i], after, met ? contacts[next].time_of_impact : 1.0, writer(i));
       }
     }
   }
@@ -52,7 +55,7 @@ class ChunkTally {
   std::optional<TallyWriter> writer_;
   std::vector<ParticleState> before_;
   std::vector<Weights> held_;
-  std::span<const double> radii_;
+  Tallied tallied_;
   std::size_t first_ = 0;  // particle of the chunk
 };
 
