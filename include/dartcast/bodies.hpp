@@ -227,11 +227,11 @@ struct BodiesCheckpoint {
 ///  1. Motion. Runge-Kutta's method of order 4 gives velocities and positions under gravity and the matching forces;
 ///  each stage computes the fits anew. Environment::advance() then moves the particles there. A contact sees the
 ///  velocity of its moment. All incident walls answer at once, with friction (response/incident_walls.hpp). A wall
-///  answers with restitution if two things hold: the particle was not on that face at the end of the last step, and
-///  two steps of its acceleration do not explain its speed. The particle is then integrated for the rest of the step,
-///  along the walls that it would enter.
+///  answers with restitution if two things hold. The particle was not on that face at the end of the last step. Two
+///  steps of its acceleration do not explain its speed. The particle is then integrated for the rest of the step, along
+///  the walls that it would enter.
 ///  2. Pull. The fits are computed again, and Environment::advance() moves the particles towards their goals. Positions
-///  alone change. This takes out energy. The exact goal is the place of rest in the body: where the matching force is
+///  alone change. This takes out energy. The exact goal is the place of rest in the body. There the matching force is
 ///  in balance with the centrifugal force, or with gravity if the body has met a wall. Damping and drag act on
 ///  velocities between the passes.
 ///  3. Edges, for bodies with a surface. Its targets are where the particles carry it. SolidSet::advance() takes it there,
@@ -274,9 +274,9 @@ class Bodies {
   /// Moves the environment straight to these positions of all the mesh's points. Cells carry particles and surfaces
   /// along. Surfaces that walls would run into give way. If they cannot, walls and surfaces stop at the same share of
   /// their ways, which is returned. Other particles must then be advanced, as after Environment::move(). Without any
-  /// surface it is Environment::move(), and the owner may call that in its place. Throws as Environment::move(), and
-  /// InvalidArgument if the bodies missed a move or an edit, or no step() came after the last move; nothing is
-  /// changed then.
+  /// surface it is Environment::move(), and the owner may call that in its place. Throws as Environment::move(). Throws
+  /// InvalidArgument if the bodies missed a move or an edit, or no step() came after the last move. Nothing is changed
+  /// then.
   double move_with(std::span<const Vec3> positions);
 
   /// A body as a rigid one, with its velocity at the end of the next step if it has no contacts. Its inverse mass is

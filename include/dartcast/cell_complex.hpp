@@ -90,8 +90,8 @@ class CellComplex {
     return back_.empty() ? positions() : std::span<const Vec3>(back_);
   }
   [[nodiscard]] const SteinerWeights& steiner_weights() const { return steiner_; }
-  /// Number of the first entries of positions() that a move gives: the mesh's own points, and once edits have made
-  /// vertices, everything up to the last of these. Steiner points and unused numbers among them can be given any value.
+  /// How many first entries of positions() a move gives: the mesh's own points, and after edits everything up to the
+  /// last vertex made. Steiner points and unused numbers among them can be given any value.
   [[nodiscard]] std::size_t point_count() const { return point_count_; }
 
   /// The array for the next positions of these points. The caller must write all of them; the content is that of two

@@ -6,8 +6,8 @@
 // from its lowest-numbered vertex over the fan triangles that do not contain it, or from a Steiner point.
 //
 // A cell of the plane is a polygon. Its faces are its edges, of two corners and one dart each, in counterclockwise
-// direction. Its simplices are triangles, and their fourth corner and facet are not used. phi2 leads to the next
-// polygon, so it is not part of the shape (dartcast/combinatorial_map.hpp).
+// direction. Its simplices are triangles, and their fourth corner and facet are not used. The shape does not have phi2,
+// which leads to the next polygon (dartcast/combinatorial_map.hpp).
 #pragma once
 
 #include <array>
@@ -140,10 +140,10 @@ class Shape {
   static_assert(max_darts < Across::outer_bit);
 
   /// Throws InvalidArgument if the apex is no corner, a corner is in no face, or an edge of a polygon has a Steiner
-  /// point. Throws InvalidMesh if there are more than max_darts, or if the faces do not close: an edge is not used
-  /// once in each direction, or in the plane the edges are not one cycle in the given order. Faces that meet in an edge with a corner on it may have fans with a
-  /// common triangle. Then the fans bound no solid. The shape has one simplex that is flat at any positions, so that
-  /// the cell is invalid until such faces get Steiner points.
+  /// point. Throws InvalidMesh if there are more than max_darts, or if the faces do not close. Faces close if each edge
+  /// is used once in each direction; in the plane, if the edges are one cycle in the given order. Faces that meet in an
+  /// edge with a corner on it may have fans with a common triangle. Then the fans bound no solid. The shape has one
+  /// simplex that is flat at any positions, so that the cell is invalid until such faces get Steiner points.
   explicit Shape(ShapeKey key);
   Shape(const Shape&) = delete;
   Shape& operator=(const Shape&) = delete;

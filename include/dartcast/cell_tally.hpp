@@ -29,16 +29,16 @@ struct TallySum {
 
 /// Sums for each cell, over the steps of an environment that they are set for (Environment::set_tally()).
 ///
-/// A step's way is that of its exact walks, from cell to cell. A piece along a face, an edge or a vertex counts once: for
-/// the cells that the walk passes, which the shift of docs/method.md decides. Where the walk passes a cell at an edge or a
-/// vertex alone, the cell is visited for a length of 0. Lengths and times of pieces are rounded, to 2^-62 of a unit and of
-/// the step; their sums are exact. So they are the same bits for any number of threads, and any order of particles.
+/// A step's way is that of its exact walks, from cell to cell. A piece along a face, an edge or a vertex counts once:
+/// for the cells that the shift of docs/method.md makes the walk pass. If the walk passes a cell at an edge or a vertex
+/// alone, the cell is visited for a length of 0. Lengths and times of pieces are rounded, to 2^-62 of a unit and of the
+/// step; their sums are exact. So they are the same bits for any number of threads, and any order of particles.
 ///
-/// Where the mesh moves, lengths are relative to it: a particle that the vertices carry along has spent its time in its
+/// If the mesh moves, lengths are relative to it. A particle that the vertices carry along has spent its time in its
 /// cell, and its track there has the length 0. A step without a walk has a straight one by this rule: from where the
-/// mesh has carried the particle, to where it ends. It takes the time up to the step's first contact. Where it meets a wall,
-/// the rest of its way and of the time counts for the cell where the step ends. Such are the steps of spheres, and those of
-/// points near walls that move at the same time.
+/// mesh has carried the particle, to where it ends. It takes the time up to the step's first contact. If it meets a
+/// wall, the rest of its way and of the time counts for the cell where the step ends. Such are the steps of spheres,
+/// and those of points near walls that move at the same time.
 class CellTally {
  public:
   /// No sums yet. Cost: linear in the cells, 52 bytes each.

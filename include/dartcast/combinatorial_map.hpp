@@ -2,7 +2,7 @@
 //
 // After T. Jund, D. Cazier, J.-F. Dufourd, "Particle-based forecast mechanism for continuous collision detection in
 // deformable environments", SPM 2009, section 3.1. No dart is stored. A dart is a cell and a number in the cell's
-// shape. phi1 and phi2 look up in the shape. phi3 goes through the record of the cell.
+// shape. The shape gives phi1 and phi2. The record of the cell gives phi3.
 //
 // A walk reads one record for each cell that it enters. The record of a hexahedron fills one cache line. Records
 // consist of 32-bit words:

@@ -39,8 +39,8 @@ struct SectionOptions {
   double finest = std::numeric_limits<double>::infinity();
 };
 
-/// Cells on either side of a plane: parts of cells that were split, and cells that it does not cross. As in all of
-/// surgery they are cells of the open edit. commit() may give them Steiner points, and its report maps them to the
+/// Cells on either side of a plane: parts of cells that were split, and cells that it does not cross. They are cells of
+/// the open edit, as in all of surgery. Its commit() may give them Steiner points, and its report maps them to the
 /// final cells.
 struct Section {
   std::vector<Cell> below, above;
@@ -175,10 +175,10 @@ struct TyingOptions {
 };
 
 /// The motion of vertices when a ligature draws the walls of the vessel together. They move towards the middle of the
-/// section, parallel to the plane: those of the section by `share` of the distance, others less, fading out smoothly.
-/// For Environment::move_until_inverted(). `section`: cells of the complex, such as ligature() returned. `positions`:
-/// some or all of the complex's, changed in place. Throws InvalidArgument if a cell does not exist, none is named,
-/// or an option is out of range. Cost: linear in the positions.
+/// section, parallel to the plane. Those of the section move by `share` of the distance. Others move less, fading out
+/// smoothly. For Environment::move_until_inverted(). `section`: cells of the complex, such as ligature() returned.
+/// `positions`: some or all of the complex's, changed in place. Throws InvalidArgument if a cell does not exist, none
+/// is named, or an option is out of range. Cost: linear in the positions.
 void draw_together(const CellComplex& complex, std::span<const Cell> section, const Plane& plane,
                    const TyingOptions& options, std::span<Vec3> positions);
 

@@ -108,9 +108,9 @@ class Deformation {
   /// After an edit: vertices that it made go with those that they were made between, so that nothing jumps. `size`: of
   /// the environment's positions now.
   void update_after_edit(const ComplexEditReport& edit, std::size_t size);
-  /// Adds a displacement of some vertices that grows from 0 at the time `begin` to all of it at `end` (s), smoothly,
-  /// and stays; on top of everything else. `displacement`: one per vertex so far. Throws InvalidArgument if the
-  /// number does not match, one is not finite, or the end is not after the beginning.
+  /// Adds a displacement of some vertices on top of everything else. It grows smoothly from 0 at the time `begin` to
+  /// all of it at `end` (s), and stays. `displacement`: one per vertex so far. Throws InvalidArgument if the number
+  /// does not match, one is not finite, or the end is not after the beginning.
   void add_pull(std::span<const Vec3> displacement, double begin, double end);
 
   /// Waits for the frames that positions() needs at `time`, so that it does not throw for them. Nothing without a
@@ -119,7 +119,7 @@ class Deformation {
 
   /// Writes the position of every vertex at `time` (s). The same bits for any number of threads. Throws
   /// InvalidArgument, and writes nothing, if time is not finite or out has not one place per vertex. If a frame
-  /// must be read: the reader's exception, or InvalidMesh that names the frame, if it has not one finite position
+  /// must be read, throws as the reader. Throws InvalidMesh, which names the frame, if it has not one finite position
   /// per vertex or, after check_plane(), leaves the plane. A frame that could not be read is read again by the next
   /// call. Cost: 10 to 60 ns per vertex and step.
   void positions(double time, std::span<Vec3> out, Threads threads = {}) const;

@@ -24,8 +24,8 @@ inline bool is_mass(double m) { return m >= smallest_mass && m <= largest_mass; 
 inline constexpr double sphere_time_bound = 0x1p-30;
 
 /// A sphere touches a wall if its radius and its distance from the wall differ by no more than this share of
-/// (radius + the largest coordinate of the centre): the rounding of a centre at that distance. Two points that are no
-/// farther apart count as one.
+/// (radius + the largest coordinate of the centre). This is the rounding of a centre at that distance. Two points that
+/// are no farther apart count as one.
 inline constexpr double touching_bound = 0x1p-46;
 
 /// Collisions of spheres, with each other and with walls, in one step.

@@ -208,9 +208,9 @@ class Environment {
   /// ago. In the plane z is not read. Write there only when every set of particles has taken part in the last move:
   /// until then they need the old content. An edit ends the validity of the result.
   [[nodiscard]] std::span<Vec3> next_positions();
-  /// Makes the positions written current, at no cost per cell. Every set of particles must then be advanced once, or
-  /// update_after_edit() an edit made after this move, before the next move. advance() takes targets relative to
-  /// positions before the move.
+  /// Makes the positions written current, at no cost per cell. Before the next move, every set of particles must be
+  /// advanced once, or follow an edit made after this move with update_after_edit(). Targets of advance() are relative
+  /// to positions before the move.
   void move();
   /// Copies new positions of all the mesh's points, then move(). Throws InvalidArgument, nothing moved, if the
   /// number does not match, or in the plane a z is not 0.
@@ -219,9 +219,9 @@ class Environment {
   /// points; nothing if all stay positive. The answer has the time and the features that meet. Nothing is moved.
   /// Throws and costs as dartcast/validity.hpp.
   [[nodiscard]] std::optional<CellInversion> first_inversion(std::span<const Vec3> positions) const;
-  /// move() to `positions` if no simplex inverts on the straight way there; else as far as `share`, in [0, 1], of
-  /// the way to the first inversion, so that every simplex stays positive. Returns the fraction of the way made: 0, and
-  /// nothing is moved, if the scene is not valid as it stands. Throws as move().
+  /// Moves as move() to `positions` if no simplex inverts on the straight way there. Otherwise it goes `share`, in [0,
+  /// 1], of the way to the first inversion, so that every simplex stays positive. Returns the fraction of the way made:
+  /// 0, and nothing is moved, if the scene is not valid as it stands. Throws as move().
   double move_until_inverted(std::span<const Vec3> positions, double share = 1.0);
 
   /// Edits the topology. `make` gets an edit of the complex (dartcast/complex_edit.hpp; the single edits are in
@@ -285,8 +285,8 @@ class Environment {
 
   /// Watches all later steps, by advance(), advance_in_rounds(), and SimultaneousStepper: after each, every particle is
   /// checked as by audit(). The hook gets the step of the first particle that fails, and any that throws InternalError,
-  /// with the cells around. write_replay() (dartcast/replay.hpp) writes it to a file. An empty hook ends this. Results stay
-  /// the same bits. Cost: some 1.3 us a particle and step.
+  /// with the cells around. Write it to a file with write_replay() (dartcast/replay.hpp). An empty hook ends this.
+  /// Results stay the same bits. Cost: some 1.3 us a particle and step.
   void set_replay_hook(ReplayHook hook);
   [[nodiscard]] const ReplayHook& replay_hook() const;
   /// The step that a particle would take to a target, as a replay. Throws as trace().

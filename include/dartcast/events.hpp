@@ -173,9 +173,9 @@ struct EventLog {
 };
 
 /// Carries an event out now, wherever the vertices are. Throws as the functions of dartcast/cutting.hpp and
-/// Simulation::edit(); nothing is changed then. If a ligature's plane crosses no free cell, or an end to reconnect has
-/// no open face, that is an EditRefused, too: an earlier event may be the reason. Walls that are drawn together go so far that every simplex stays
-/// positive, if they cannot go all the way.
+/// Simulation::edit(); nothing is changed then. Throws EditRefused, too, if a ligature's plane crosses no free cell, or
+/// an end to reconnect has no open face. An earlier event may be the reason. Walls that are drawn together go so far
+/// that every simplex stays positive, if they cannot go all the way.
 EventReport apply(Simulation& simulation, const Event& event);
 
 }  // namespace dartcast

@@ -27,12 +27,12 @@ struct BoxOptions {
 /// The largest jitter with which no tetrahedron of a cube is inverted, however its corners are moved.
 inline constexpr double surely_valid_jitter = 1.0 / 3.0;
 
-/// A conforming mesh of a box. Point (i, j, k) of the lattice has number i + (nx + 1) (j + (ny + 1) k) and lies at
-/// origin + size * i / nx and so on: exactly on integers if size equals cells. The middle points of cubes that are
-/// cut from their middle (pyramids) follow; each is the mean of the cube's corners. Cubes come in the same order, x
+/// A conforming mesh of a box. Point (i, j, k) of the lattice has number i + (nx + 1) (j + (ny + 1) k). It lies at
+/// origin + size * i / nx and so on, exactly on integers if size equals cells. The middle points of cubes that are cut
+/// from their middle (pyramids) follow; each is the mean of the cube's corners. Cubes come in the same order, x
 /// fastest, and the cells of a cube one after another. Patches 1 to 6 ("xmin", "xmax", "ymin", "ymax", "zmin", "zmax")
-/// are the sides of the box. `free` is filled if a cube is blocked. Up to surely_valid_jitter all hexahedra,
-/// prisms and tetrahedra are valid. With more, cells may become invalid, and the more cells the likelier.
+/// are the sides of the box. `free` is filled if a cube is blocked. Up to surely_valid_jitter all hexahedra, prisms and
+/// tetrahedra are valid. With more, cells may become invalid, and the more cells the likelier.
 ///
 /// Throws InvalidArgument for no cubes along an axis, 2^29 cells or more, and polyhedra. It also throws for a size
 /// that is not positive, a number that is not finite, and a share or jitter outside [0, 1]. Cost: about 0.15 us per

@@ -15,8 +15,8 @@
 // before the commit. ComplexEdit (dartcast/complex_edit.hpp) does them.
 //
 //  - Steiner points. A touched cell loses its Steiner point, and so does a face whose corners changed. Other faces keep
-//    theirs, on both sides. Edits make corners in which a face is straight (DraftCorner::straight): a vertex that was
-//    put on an edge, or the ends of an edge that was merged away. They also make neighbours in one plane
+//    theirs, on both sides. Edits make corners in which a face is straight (DraftCorner::straight). Such a corner is a
+//    vertex that was put on an edge, or an end of an edge that was merged away. Edits also make neighbours in one plane
 //    (DraftCorner::coplanar): the parts of a split face, or the faces around a merged one. These marks stay with the
 //    cells until the marked place is gone. They are on the safe side, because a vertex may have moved since. A face
 //    that may be straight somewhere needs a Steiner point. So does a cell with such a face, or with two faces in one
@@ -48,8 +48,8 @@ struct DraftCorner {
   bool coplanar = false;  ///< the cell's face beyond the edge may lie in the same plane
 };
 
-/// The other side of a draft's face: nothing, a face of a cell of the map, or a face of another draft of the same call.
-/// If the named cell is one of the replaced cells, the draft's face that continues its face is meant.
+/// The other side of a draft's face. It is nothing, a face of a cell of the map, or a face of another draft of the same
+/// call. If the named cell is one of the replaced cells, the draft's face that continues its face is meant.
 struct DraftLink {
   static constexpr std::uint32_t no_draft = 0xffffffffU;
 

@@ -100,7 +100,7 @@ inline void add_finding(std::vector<Finding>& list, Finding finding) {
 /// for findings about points.
 ///
 /// In a mesh of the plane (report.dimension = 2) faces are edges, and cells that are not weakly convex are inverted.
-/// non_conforming are edges with a point of another inside, or that lie against others. There are no boundary_edges.
+/// `non_conforming` are edges that hold a point of another, or lie against others. There are no boundary_edges.
 ///
 /// It never throws, whatever the arrays contain. Cost: n log n, about 2 us a hexahedron; 40 bytes a face.
 MeshReport check_and_repair(MeshData& mesh);

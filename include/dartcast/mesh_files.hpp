@@ -54,12 +54,12 @@ struct MeshFile {
   MeshReport report;
 };
 
-/// Reads a mesh by the file's ending and content, and checks and repairs it: .vtu, .pvtu and .vtk (legacy);
-/// .msh, .msh2, .msh4 (Gmsh 1, 2 and 4); .mesh and .meshb (Medit); .node or .ele, with the other beside it
-/// (TetGen). Or the folder of an OpenFOAM case (formats/openfoam.hpp) or of SimVascular (formats/vtp_surface.hpp).
-/// The cell array `free` of a .vtu or .vtk file becomes MeshData::free if write_mesh() has written it.
-/// Nothing in the file makes this throw. A file that cannot be read has a defect of kind "file" in the report, with line
-/// or byte. Cost: a few times the file's size in memory.
+/// Reads a mesh, checks and repairs it. The file's ending and content decide how. Endings: .vtu, .pvtu and .vtk
+/// (legacy); .msh, .msh2, .msh4 (Gmsh 1, 2 and 4); .mesh and .meshb (Medit); .node or .ele, with the other beside it
+/// (TetGen). The path may be the folder of an OpenFOAM case (formats/openfoam.hpp) or of SimVascular
+/// (formats/vtp_surface.hpp). The cell array `free` of a .vtu or .vtk file becomes MeshData::free if write_mesh() has
+/// written it. Nothing in the file makes this throw. A file that cannot be read has a defect of kind "file" in the
+/// report, with line or byte. Cost: a few times the file's size in memory.
 MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// The same, but throws InvalidMesh, with the file's name and the first defect, if the mesh is refused.
@@ -89,8 +89,8 @@ struct SurfaceScene;  // dartcast/scene.hpp
 /// program of its own in a temporary folder. Folder and program are gone when this process ends, also by a signal.
 ///
 /// The surfaces are checked first, by exact signs: closed, oriented (or made so), no triangle without area, no two that
-/// cross or touch. The tetrahedra are checked then: each triangle of the surfaces is a face of two of them, with its
-/// points bit by bit; what a region holds follows from these faces alone; its volume is the enclosed one to 1e-9.
+/// cross or touch. The tetrahedra are checked then. Each triangle of the surfaces is a face of two of them, with its
+/// points bit by bit. These faces alone decide which cells a region holds. Its volume is the enclosed one to 1e-9.
 ///
 /// Regions have the surfaces' names; the cells in them are free, and those outside blocked. Patches are the groups of
 /// the files (.stl solids, .obj groups), else the parts between sharp edges (wall, or wall_1, wall_2 ...). Caps are
@@ -106,19 +106,20 @@ MeshFile mesh_surfaces(const SurfaceScene& scene, const ReadOptions& options = {
 // Writing meshes.
 
 /// Writes a mesh in the format of the path's ending: .vtu, .vtk (legacy), .msh or .msh2 (Gmsh 2.2 ASCII), .msh4 (Gmsh
-/// 4.1 ASCII), .mesh (Medit); surfaces and meshes of the plane also as .stl, .obj, .ply, .off and .vtp. read_mesh() reads the same cells, points bit by bit, regions and patches back. Data
-/// without a place in the format are left out: arrays and `free` outside VTK's formats; names of regions and patches
-/// in .mesh. The bytes go to a file beside the path, with ".part" in its name. When it is whole it takes the path's
-/// place; on failure the file at the path is unchanged. Precondition: check_and_repair() found the mesh valid. Throws
-/// InvalidArgument if the ending is none of writable_mesh_endings(). It also throws if .msh or .mesh should hold
-/// polyhedra, polygons, faces of more than four corners, or baffles. Throws Error if the file cannot be written.
+/// 4.1 ASCII), .mesh (Medit). Surfaces and meshes of the plane can also be .stl, .obj, .ply, .off and .vtp. The
+/// function read_mesh() gives back the same cells, regions and patches, and the points bit by bit. Data without a place
+/// in the format are left out: arrays and `free` outside VTK's formats; names of regions and patches in .mesh. The
+/// bytes go to a file beside the path, with ".part" in its name. When it is whole it takes the path's place; on failure
+/// the file at the path is unchanged. Precondition: check_and_repair() found the mesh valid. Throws InvalidArgument if
+/// the ending is none of writable_mesh_endings(). It also throws if .msh or .mesh should hold polyhedra, polygons,
+/// faces of more than four corners, or baffles. Throws Error if the file cannot be written.
 void write_mesh(const MeshData& mesh, const std::filesystem::path& path);
 
 // Meshes in pieces, for ranks.
 
-/// Writes a mesh in pieces: a .pvtu file that names a .vtu file beside it for each part, which ParaView opens as one mesh.
-/// read_mesh() reads them as the whole mesh, read_mesh_part() as parts. Each piece has its ghosts, and the numbers that its
-/// points and cells have in the whole. Precondition: check_and_repair() found the mesh valid. Throws as partition();
+/// Writes a mesh in pieces: a .pvtu file that names a .vtu file beside it for each part. ParaView and read_mesh() open
+/// them as the whole mesh, read_mesh_part() as parts. Each piece has its ghosts, and the numbers that its points and
+/// cells have in the whole. Precondition: check_and_repair() found the mesh valid. Throws as partition();
 /// InvalidArgument if the path does not end in .pvtu; Error if a file cannot be written.
 void write_mesh_parts(const MeshData& mesh, std::uint32_t parts, const std::filesystem::path& path);
 

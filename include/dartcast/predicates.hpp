@@ -54,14 +54,14 @@ Sign orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, std::u
 /// The same sign without the filter, for callers that have filtered a batch themselves.
 Sign orient3d_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
-/// The bound of a filter. A determinant u . (v x w) of differences of stored doubles, evaluated in doubles in this
-/// order, is off by at most determinant_error times m, as long as bound_holds(). Here m is the product of the largest
-/// |x|, |y| and |z| among u, v and w. Shewchuk's bound is (7 + 56 e) e of the permanent, with e = 2^-53, and the permanent is at most
-/// 6 m. The last factor covers three things:
+/// The bound of a filter. A determinant u . (v x w) of differences of stored doubles is evaluated in doubles in this
+/// order. It is off by at most determinant_error times m, as long as bound_holds(). Here m is the product of the
+/// largest |x|, |y| and |z| among u, v and w. Shewchuk's bound is (7 + 56 e) e of the permanent, with e = 2^-53, and
+/// the permanent is at most 6 m. The last factor covers three things:
 ///
 ///  - the rounding of m;
 ///  - products that underflow: at most 6 * 2^-1075 * 2^301, against e m >= 2^-755;
-///  - coordinates that count as 0: they change a difference by less than 2^-299, so the determinant by less than 18 *
+///  - coordinates that count as 0. They change a difference by less than 2^-299, so the determinant by less than 18 *
 ///    2^-299 m / 2^-234 < 2^-60 m.
 inline constexpr double determinant_error = 6.0 * (7.0 + 56.0 * 0x1p-53) * 0x1p-53 * (1.0 + 0x1p-10);
 
@@ -97,17 +97,17 @@ Vec3 extent_of(const Vec3& first, const Vectors&... rest) {
 
 /// Whether arithmetic on the differences of these points rounds nothing. `extent` is that of the differences. It rounds
 /// nothing if every coordinate is a multiple of a unit g of its axis, and the differences are below 2^16 g. Then the
-/// differences are exact, and so is every sum of products, one factor from each axis, that stays below 2^53 units: a
-/// determinant of three differences (below 2^51), or two of them in a product with the sum of three more. The result is
-/// false if a coordinate is not finite. Precondition: such products do not underflow or overflow. This is so with
-/// bound_holds(), or if each extent is 0 or in [2^-250, 2^301].
+/// differences are exact. So is every sum of products of one factor from each axis, if it stays below 2^53 units. Such
+/// are a determinant of three differences (below 2^51), and two of them in a product with the sum of three more. The
+/// result is false if a coordinate is not finite. Precondition: such products do not underflow or overflow. This is so
+/// with bound_holds(), or if each extent is 0 or in [2^-250, 2^301].
 ///
-/// Proof. g is the unit in the last place of c = 2^37 extent, so g > 2^-53 c = 2^-16 extent. (If c is so small that
-/// g is the smallest double, extent is below 2^16 g, too.) |x| + c is at least c, so it rounds to a multiple of g.
-/// Subtracting c leaves a multiple of g, however it is rounded. So the result can equal |x| only if |x| is a multiple
-/// of g. Conversely it does equal |x| if |x| is a multiple of g below c. With bound_holds(), each g is above 2^-16
-/// 2^-234. So no product is below the smallest double, and no coordinate that counts as 0 is a multiple of g, unless it
-/// is 0.
+/// Proof. Let g be the unit in the last place of c = 2^37 extent, so that g > 2^-53 c = 2^-16 extent. (If c is so small
+/// that g is the smallest double, extent is below 2^16 g, too.) The sum |x| + c is at least c, so it rounds to a
+/// multiple of g. Subtracting c leaves a multiple of g, however it is rounded. So the result can equal |x| only if |x|
+/// is a multiple of g. Conversely it does equal |x| if |x| is a multiple of g below c. With bound_holds(), each g is
+/// above 2^-16 2^-234. So no product is below the smallest double, and no coordinate that counts as 0 is a multiple of
+/// g, unless it is 0.
 template <class... Points>
 bool rounds_nothing(const Vec3& extent, const Points&... points) {
   const Vec3 c = 0x1p+37 * extent;

@@ -34,11 +34,11 @@ struct Subdivided {
   std::vector<Cell> cells;  ///< all new cells: the parts, in the order of the corners, then the cells around them
 };
 
-/// Cuts a cell into one part for each corner. The new vertices are one in the middle of the cell, one in the middle of
-/// each face and one in that of each edge (means of corners). A hexahedron becomes 8 hexahedra, a tetrahedron 4. A
-/// corner with k edges gives a part with 2 k faces. The cells around an edge get its middle as a corner in which their
-/// faces are straight. The neighbour across a face has it split into the same quadrilaterals. Parts keep the free mark
-/// and the source, faces their patch.
+/// Cuts a cell into one part for each corner. The new vertices are the middles of the cell, of each face and of each
+/// edge (means of corners). A hexahedron becomes 8 hexahedra, a tetrahedron 4. A corner with k edges gives a part with
+/// 2 k faces. The cells around an edge get its middle as a corner in which their faces are straight. The neighbour
+/// across a face has it split into the same quadrilaterals. Parts keep the free mark and the source, faces their
+/// patch.
 ///
 /// Middles that neighbours already have are used. So neighbours that are subdivided one after the other, any number
 /// of times, conform. Faces that may lie in one plane (CombinatorialMap::flat()) count as one face with its middle.
@@ -69,8 +69,8 @@ void update_after_edit(const CombinatorialMap& map, std::span<const Cell> added,
 /// ones. They are convex, so any plane can cut them.
 ///
 /// Throws InvalidArgument if there is no such cell, or in the plane. Throws EditRefused, nothing changed, if a
-/// cell has a simplex that is not positive; or if it needs a Steiner point after earlier edits, before commit().
-/// Cost: that of the cells and their neighbours.
+/// cell has a simplex that is not positive, or needs a Steiner point after earlier edits, before commit(). Cost: that
+/// of the cells and their neighbours.
 std::vector<Cell> divide_into_simplices(ComplexEdit& edit, std::span<const Cell> cells);
 
 /// How far a repair may reach.

@@ -134,8 +134,8 @@ void hold_stopped(const StepReport& report, const WallResponses& responses, std:
 /// is not longer than v.
 Vec3 reflected(const Vec3& v, std::span<const WallHit> walls, double restitution, double friction);
 
-/// Projection on the newest walls; an earlier wall joins (a crease, a corner) only if the projected vector points into
-/// it: joined at once, two nearly coplanar fan triangles would make a false crease.
+/// Projection on the newest walls. An earlier wall joins (a crease, a corner) only if the projected vector points into
+/// it. If both joined at once, two nearly coplanar fan triangles would make a false crease.
 Vec3 slid(const Vec3& v, std::span<const WallHit> walls, std::span<const WallHit> earlier);
 
 }  // namespace dartcast

@@ -132,17 +132,18 @@ struct ExpectedOutput {
 using Announce = std::function<void(const ExpectedOutput&)>;
 
 /// Runs a scene, and reads the files that it names. Throws Error and its kinds if the scene, its mesh or its
-/// positions cannot be used, or output cannot be written; and RankFailed if another rank has failed. If ranks share
+/// positions cannot be used, or output cannot be written. Throws RankFailed if another rank has failed. If ranks share
 /// the run, the first returns the summary of all.
 Summary run_scene(const Scene& scene, const RunOptions& options, const Progress& progress = {},
                   const Announce& announce = {});
 
 // Results for other programs.
 
-/// Writes the particles of a run's frames into an OpenFOAM case, as the cloud of this name: positions with their cells,
-/// U and origId, in TIME/lagrangian/CLOUD, which OpenFOAM's programs and ParaView read. Files of an earlier cloud of the
+/// Writes the particles of a run's frames into an OpenFOAM case, as the cloud of this name. TIME/lagrangian/CLOUD gets
+/// positions with their cells, U and origId. OpenFOAM's programs and ParaView read it. Files of an earlier cloud of the
 /// same name and time are replaced, and nothing else is changed. Returns the number of frames. Precondition: the run's
-/// mesh is that of the case, and was not edited. Throws InvalidArgument if there is no such case, or the name is none; Error if a frame cannot be read or a file cannot be written.
+/// mesh is that of the case, and was not edited. Throws InvalidArgument if there is no such case, or the name is none;
+/// Error if a frame cannot be read or a file cannot be written.
 std::size_t write_lagrangian(const std::filesystem::path& run_folder, const std::filesystem::path& openfoam_case,
                              const std::string& cloud = "particles");
 

@@ -100,8 +100,8 @@ struct DeformationScene {
   DeformationStep step;
   std::string field;  ///< pulse: a point array of three components; empty: none
   std::string path;   ///< pulse: a point array of one component; empty: none
-  /// frames: mesh files with the same points, one for each of the step's times; or one name with a star in place of a
-  /// whole number; or one .pvd file or case of OpenFOAM, which give the times, too. Empty: the frames of `step`.
+  /// frames: mesh files with the same points, one for each of the step's times. A single name may have a star in place
+  /// of a whole number. A single .pvd file or case of OpenFOAM gives the times, too. Empty: the frames of `step`.
   std::vector<std::filesystem::path> frames;
   double spacing = 0.0;  ///< frames: s from one to the next, the first at 0; 0: by the step's times
   /// frames: a point array of three components, which is added to the points of the scene's mesh. Empty: the points of
@@ -259,8 +259,8 @@ struct FieldScene {
   std::string array;
   std::optional<FieldPlace> at;  ///< none: the points if they have the array, else the cells
   FieldFrame frame = FieldFrame::space;
-  /// Mesh files with the same points and cells, one for each time; or one name with a star in place of a whole number;
-  /// or one .pvd file or case of OpenFOAM, which give the times, too. Empty: the arrays of the scene's mesh.
+  /// Mesh files with the same points and cells, one for each time. A single name may have a star in place of a whole
+  /// number. A single .pvd file or case of OpenFOAM gives the times, too. Empty: the arrays of the scene's mesh.
   std::vector<std::filesystem::path> files;
   std::vector<double> times;  ///< s, increasing, one for each array or file; empty: by `spacing`
   double spacing = 0.0;       ///< s from one time to the next, the first at 0; 0: by `times`
@@ -275,8 +275,8 @@ struct FieldScene {
   [[nodiscard]] bool given() const { return !array.empty() || samples.read; }
 };
 
-/// The name of a component: that of the array if it has one; else with _x, _y, _z behind it (3), _xx, _xy, _xz, _yy, _yz,
-/// _zz (6), _xx, _xy, _xz, _yx ... (9), or _0, _1 ...
+/// The name of a component: that of the array if there is one alone. Otherwise it ends in _x, _y, _z (3); _xx, _xy,
+/// _xz, _yy, _yz, _zz (6); _xx, _xy, _xz, _yx ... (9); or _0, _1 ...
 std::string component_name(const std::string& array, std::size_t components, std::size_t k);
 
 /// Time steps, and the forces on particles.

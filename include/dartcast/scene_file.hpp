@@ -34,11 +34,11 @@ struct LoadedScene {
 /// `max_memory` and `kept_mesh` have an effect. Throws Error and its kinds, naming the file and its place in the scene.
 LoadedScene load_scene_files(Scene scene, const ReadOptions& options = {}, Threads threads = {});
 
-/// The same for ranks that share the scene by cells (Partition::cells). Each gets its part of the mesh, and no rank but the
-/// first ever has the whole. A box is made in parts (has_parts()), and a .pvtu file is read in parts (read_mesh_part()):
-/// then the first does not have it, either. Other meshes are read or made by the first, which sends each its part. Frames
-/// of a deformation are read by all. Throws as load_scene_files(), and InvalidArgument if pieces are
-/// to be changed in a way that needs the whole: patches by angle or array, bad cells left out. Collective.
+/// The same for ranks that share the scene by cells (Partition::cells). Each gets its part of the mesh, and no rank but
+/// the first ever has the whole. A box is made in parts (has_parts()), and a .pvtu file is read in parts
+/// (read_mesh_part()): then the first does not have it, either. Other meshes are read or made by the first, which sends
+/// each its part. Frames of a deformation are read by all. Throws as load_scene_files(). Throws InvalidArgument if
+/// pieces are to be changed in a way that needs the whole: patches by angle or array, bad cells left out. Collective.
 LoadedScene load_scene_part(Scene scene, Ranks& ranks, const ReadOptions& options = {}, Threads threads = {});
 
 }  // namespace dartcast

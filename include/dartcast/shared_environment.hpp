@@ -59,8 +59,8 @@ struct SharedStep {
 /// Steps as those of an Environment of the whole mesh, to the same bits, for points in space. Positions, cells, contacts and
 /// their order for each particle do not depend on the parts, or on their number.
 ///
-/// Every function but those that are const and say nothing else is collective: all ranks call it, in the same order, and
-/// wait for each other. A function that throws on one rank alone must be followed by Ranks::fail() there.
+/// Every function that is not const is collective, and so is a const one that says so. All ranks call it, in the same
+/// order, and wait for each other. A function that throws on one rank alone must be followed by Ranks::fail() there.
 class SharedEnvironment {
  public:
   /// `ranks` outlive it. Throws as Environment(); InvalidArgument if the part is of another rank, in the plane, and if

@@ -109,7 +109,7 @@ class SimultaneousStepper {
   ///   starts on a wall, or as near as rounding, or was stopped at one in its last step.
   ///
   /// Throws as Environment::advance(). Cost: with it a whole step of a simulation takes 1.6 to three times the
-  /// instructions, and nine times where points rest on walls that move (docs/method.md).
+  /// instructions. If points rest on walls that move, it takes nine times as many (docs/method.md).
   StepReport advance(Environment& environment, Particles& particles, std::span<const Vec3> targets,
                      const ContactCallback& respond = {}, const StepOptions& options = {});
 

@@ -96,7 +96,7 @@ struct StepReport {
 
 // Where a particle passes from cell to cell in one step.
 //
-// After T. Jund, D. Cazier, J.-F. Dufourd, SPM 2009, section 4.1, figures 5 and 6: a displacement is decomposed along
+// After T. Jund, D. Cazier, J.-F. Dufourd, SPM 2009, section 4.1, figures 5 and 6. A displacement is decomposed along
 // the cells that it crosses, with the particle's state (its kind of cell and a dart of that cell) at each crossing.
 
 /// A passage from one cell to another. Exact signs decide which face, edge or vertex it goes through. Time and point

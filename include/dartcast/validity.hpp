@@ -66,10 +66,10 @@ struct SimplexInversion {
 /// that touches zero and is positive again counts. Exact: no inversion is missed, none is invented. Precondition:
 /// `until` is in [0, 1]; it is rounded down to a multiple of inversion_resolution.
 ///
-/// The kind: a corner is counted to one of the parts if its facet's area along an axis is proved to keep its sign
-/// until the root. This is so if the area is above 2^-35 of the simplex's extents before and after. Otherwise the
-/// corner is counted to neither part. So the kinds from vertex_edge to line mean: this, or too close to it to
-/// distinguish. Coordinates outside the exact range may give undecidable even if the volume stays positive.
+/// The kind names two parts. A corner is counted to one of them if its facet's area along an axis is proved to keep its
+/// sign until the root. This is so if the area is above 2^-35 of the simplex's extents before and after. Otherwise the
+/// corner is counted to neither. So the kinds from vertex_edge to line mean: this, or too close to it to distinguish.
+/// Coordinates outside the exact range may give undecidable even if the volume stays positive.
 ///
 /// Cost: about 20 ns if the filter proves the volume positive, and some 0.1 us if it must halve the step. If exact
 /// signs are needed, 2 to 5 us; if the simplex is inverted, 20 us.
@@ -78,8 +78,8 @@ struct SimplexInversion {
 ///  1997. Its first root is enclosed by exact signs of its values, its discriminant and Bernstein's coefficients.
 std::optional<SimplexInversion> find_inversion(const Corners& before, const Corners& after, double until = 1.0);
 
-// Collisions of the environment with itself: when a motion of the vertices first inverts a simplex of the scene, and
-// how far the motion can be followed.
+// Collisions of the environment with itself: when a motion of the vertices first inverts a simplex, and how far it can
+// be followed.
 
 /// A simplex of a cell that a motion inverts.
 struct CellInversion {

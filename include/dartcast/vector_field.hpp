@@ -41,9 +41,9 @@ struct FieldSamples {
   std::string name = "the field";  ///< in messages
   FieldPlace place = FieldPlace::points;
   std::vector<double> times = {0.0};  ///< s, increasing; a single one: the field is steady
-  /// The values at times[k]: one per point of the mesh, or one per cell in increasing order of
-  /// CombinatorialMap::source(), which is the order of the mesh. It may read a file; it is called when a step needs the
-  /// sample, from one thread at a time.
+  /// The values at times[k]: one per point of the mesh, or one per cell in the order of the mesh (increasing
+  /// CombinatorialMap::source()). It may read a file; it is called when a step needs the sample, from one thread at a
+  /// time.
   std::function<std::vector<Vec3>(std::size_t k)> read;
   /// 0: before the first time the field is as at the first, after the last time as at the last. Above 0, s: the field
   /// repeats, and is at times[0] + period as at times[0]. Not less than the time from the first to the last. With just
@@ -53,8 +53,8 @@ struct FieldSamples {
   bool vectors = true;  ///< false: any three numbers, which in the plane may have a z
 };
 
-/// An array of any number of components at points or cells, three of them in each of the samples, in their order; behind
-/// the last component there are zeros.
+/// An array of any number of components at points or cells. Each of the samples has three of them, in their order.
+/// Zeros follow the last component.
 struct ArraySamples {
   std::string name;
   std::size_t components = 1;
@@ -94,13 +94,13 @@ class VectorField {
   /// are read. `complex`: as it is now. The same bits for any number of threads.
   void set_times(std::span<const double> times, const CellComplex& complex, Threads threads = {});
 
-  /// After an edit: new vertices take the values of those that they were made between, new cells those of the cells
-  /// that they were made from. `complex`: as it is now. If the field is not steady, call set_times() before at().
+  /// Follows an edit. New vertices take the values of those between which they were made, new cells those of the cells
+  /// from which they were made. `complex`: as it is now. If the field is not steady, call set_times() before at().
   void update_after_edit(const ComplexEditReport& edit, const CellComplex& complex);
 
   /// The vector at the point of barycentric coordinates w in a simplex with these corners now, at the `moment`-th of
-  /// the times set. In the mesh's frame: relative to the mesh, taken from rest by the simplex's own linear map, so that
-  /// a flow along a wall stays along it.
+  /// the times set. In the mesh's frame it is relative to the mesh. The simplex's own linear map takes it there from
+  /// rest, so that a flow along a wall stays along it.
   [[nodiscard]] Vec3 at(const CellComplex& complex, SimplexId simplex, const std::array<double, 4>& w,
                         const Corners& now, std::size_t moment = 0) const;
 
