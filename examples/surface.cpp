@@ -1,4 +1,4 @@
-// A swarm on a torus that breathes: it leaves one place in all directions, goes straight on within the surface, and
+// A swarm on a torus that breathes. It leaves one place in all directions, goes straight on within the surface, and
 // comes back from a ring of blocked faces. Writes surface_NN.vtu and particles_NN.csv into the folder named, or here.
 #include "dartcast/surface.hpp"
 

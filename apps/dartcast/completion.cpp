@@ -1,7 +1,7 @@
 // The verbs help and completion, which know all verbs and their options.
 //
-// The type of an option's value, as help shows it, says how the value is completed: words with bars between them are the
-// words that are allowed, VERB is one of the verbs. All else is left to the shell, which completes files.
+// The type of an option's value, as help shows it, says how the value is completed. Words with bars between them are
+// the words that are allowed; VERB is one of the verbs. All else is left to the shell, which completes files.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

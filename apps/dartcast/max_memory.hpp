@@ -7,8 +7,8 @@
 
 namespace dartcast::app {
 
-/// Bytes from a text as 512M or 2.5G: a number, more than 0, and a unit K, M, G or T of 1024, its square, ... or none.
-/// Throws CLI::ValidationError.
+/// Bytes from a text as 512M or 2.5G. It is a number above 0 and a unit: K, M, G or T for 1024, its square, ... or
+/// none. Throws CLI::ValidationError.
 std::uint64_t parse_memory(const std::string& text);
 
 /// Adds the option to a verb. `bytes` is as it was where the option is not given, and must outlive the verb.

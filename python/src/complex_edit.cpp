@@ -1,4 +1,4 @@
-// Binds dartcast/complex_edit.hpp. An edit of a complex of its own is a context manager; that of an environment is open
+// Binds dartcast/complex_edit.hpp. An edit of a complex alone is a context manager. An edit of an environment is open
 // during the call of the function given to edit().
 #include "dartcast/complex_edit.hpp"
 

@@ -29,8 +29,8 @@ PyObject* new_object(PyTypeObject* type, PyObject* arguments, PyObject* /*named*
   return nullptr;
 }
 
-// An object that Class.__new__(Class) made has no C++ object. pybind11 would give it memory without content at its first
-// use, and asks this function for it.
+// An object that Class.__new__(Class) made has no C++ object. At its first use pybind11 would give it memory without
+// content, and asks this function for it.
 void* refuse_first_use(std::size_t /*size*/) {
   throw py::type_error("this object was never initialised: make it by a call of its class, which runs __init__()");
 }

@@ -1,9 +1,9 @@
 // Elementary functions that give the same bits on every machine: the mathematical libraries of systems differ in the
 // last bits. They use + - * / and square roots of doubles, and operations that are exact.
 //
-// Errors are below 1 ulp, but for exponential_less_one(), polar_angle() and hypotenuse(), which are below 2, and power()
-// (tested against 113 bits). NaN, infinities and zeros give what the functions of <cmath> give. sin(-x) = -sin(x) and
-// cos(-x) = cos(x) hold to the last bit, and no sine is above 1.
+// Errors are below 1 ulp, but for exponential_less_one(), polar_angle() and hypotenuse(), which are below 2, and
+// power() (tested against 113 bits). NaN, infinities and zeros give what the functions of <cmath> give. The rules
+// sin(-x) = -sin(x) and cos(-x) = cos(x) hold to the last bit, and no sine is above 1.
 #pragma once
 
 #include <cmath>
@@ -24,8 +24,8 @@ double exponential_less_one(double x);
 
 /// ln(x).
 double logarithm(double x);
-/// x^y for x >= 0. The error is below 2 + 3 abs(y ln x) ulp: 1 ulp of the logarithm and half of one of the product, at
-/// most 1.5 2^-52 abs(y ln x), are relative errors of the result, and the exponential adds 1 ulp.
+/// x^y for x >= 0. The error is below 2 + 3 abs(y ln x) ulp. The logarithm is off by 1 ulp, the product by half of one.
+/// The result's relative error from these is at most 1.5 2^-52 abs(y ln x), and the exponential adds 1 ulp.
 double power(double x, double y);
 
 /// The angle of (x, y) from the x axis, in [-pi, pi], as atan2().

@@ -15,7 +15,7 @@ using Mask8 = int __attribute__((vector_size(32)));  // all bits of a lane, or n
 
 inline Mask8 splat_int(int x) { return Mask8{x, x, x, x, x, x, x, x}; }
 
-// One bit for each lane, or four, numbers 0 to 3: lane l of number i has the bit 16 (l / 4) + 4 i + l % 4. One alone is
+// One bit for each lane, or four, numbers 0 to 3. Lane l of number i has the bit 16 (l / 4) + 4 i + l % 4. One alone is
 // number 0.
 using Bits8 = std::uint32_t;
 constexpr Bits8 bits_of_number_0 = 0x000f000fU;

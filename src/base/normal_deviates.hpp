@@ -11,12 +11,12 @@
 namespace dartcast {
 
 /// Four independent deviates of mean 0 and variance 1, after G. E. P. Box, M. E. Muller, 1958. Two words of bits make a
-/// pair: u and t are the middles of two of 2^32 equal pieces of [0, 1], and the pair is sqrt(-2 ln u) times the cosine and
-/// the sine of t turns.
+/// pair. They choose u and t, the middles of two of 2^32 equal pieces of [0, 1]. The pair is sqrt(-2 ln u) times the
+/// cosine and the sine of t turns.
 ///
-/// Each differs from that value by less than 3 2^-52 of it: logarithm and sine are off by 1 ulp each, the root halves the
-/// first and adds 1/2, and the product adds 1/2. The pieces make the variance smaller than 1 by less than 2^-33, and no
-/// deviate is above 6.7.
+/// Each differs from that value by less than 3 2^-52 of it. Logarithm and sine are off by 1 ulp each, the root halves
+/// the first and adds 1/2, and the product adds 1/2. The pieces make the variance smaller than 1 by less than 2^-33,
+/// and no deviate is above 6.7.
 inline std::array<double, 4> normal_deviates(const std::array<std::uint32_t, 4>& bits) {
   const auto middle = [](std::uint32_t piece) { return (static_cast<double>(piece) + 0.5) * 0x1p-32; };
   std::array<double, 4> deviates{};

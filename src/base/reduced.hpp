@@ -11,8 +11,8 @@
 
 namespace dartcast {
 
-/// The first rank adds those of all to its own, by rank, with add(sum, other), and all get the sum. pack(value) gives bytes,
-/// and unpack(bytes) the value. Collective, if there are several.
+/// The first rank adds those of all to its own, in the order of ranks, with add(sum, other), and all get the sum. Bytes
+/// come from pack(value), and unpack(bytes) gives the value. Collective, if there are several.
 template <class T, class Add, class Pack, class Unpack>
 T reduced(Ranks* ranks, const T& own, Add&& add, Pack&& pack, Unpack&& unpack) {
   if (!are_several(ranks)) return own;

@@ -18,8 +18,8 @@ struct FieldSeries {
 /// there is no such file, or the last part has not exactly one star.
 FieldSeries numbered_files(const std::filesystem::path& pattern);
 
-/// The files of a ParaView collection, in its order, relative to its folder. Throws Error, with the file's name, if
-/// it cannot be read, or has no file, files of several parts, or times that are missing or do not increase.
+/// The files of a ParaView collection, in its order, relative to its folder. Throws Error, with the file's name, if it
+/// cannot be read, has no file, or has files of several parts. Throws it, too, if times are missing or do not increase.
 FieldSeries read_pvd(const std::filesystem::path& path);
 
 /// A series as a scene gives it.
@@ -38,8 +38,8 @@ bool names_series(const std::filesystem::path& file);
 void check_exist(std::span<const std::filesystem::path> files);
 
 /// The files and their times, of a field or of frames. A single name may be a collection (.pvd) or a case of OpenFOAM,
-/// which have their own times, or have a star in place of a number. Throws Error and its kinds if it has no file, or not
-/// the right times.
+/// which have their own times. It may also have a star in place of a number. Throws Error and its kinds if it has no
+/// file, or not the right times.
 FieldSeries file_series(const NamedSeries& named);
 
 }  // namespace dartcast

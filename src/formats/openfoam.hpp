@@ -14,8 +14,8 @@
 
 namespace dartcast {
 
-/// Whether the path is a case, or a part of one: its folder, a file in it that ends in .foam, a polyMesh folder, or
-/// CASE/TIME, which need not exist if the processors' folders have it.
+/// Whether the path is a case, or a part of one. It may be its folder, a file in it that ends in .foam, or a polyMesh
+/// folder. It may also be CASE/TIME, which need not exist if the processors' folders have it.
 bool is_openfoam(const std::filesystem::path& path);
 
 /// Whether the path is a case itself: its folder, or a file in it that ends in .foam.
@@ -24,12 +24,12 @@ bool is_openfoam_case(const std::filesystem::path& path);
 /// The kind of a warning about a field that cannot be read, before its name.
 inline const std::string unread_field = "field ";
 
-/// The mesh of a case, of constant/polyMesh or else put together from the processors' folders; of CASE/TIME with the
-/// points of that time, and with its fields at cells and points as arrays. Zones of cells become regions. Patches keep
-/// their names; so do zones of faces, for faces that are in no patch. A mesh of one layer between patches of the type
-/// `empty` becomes a mesh of the plane. Cells and faces keep their labels as sources. A field that
-/// cannot be read is left out with a warning. Throws InvalidMesh, with file and line, or byte, if the content is
-/// not right or cannot be used.
+/// The mesh of a case, of constant/polyMesh or else put together from the processors' folders. The mesh of CASE/TIME
+/// has the points of that time, and its fields at cells and points as arrays. Zones of cells become regions. Patches
+/// keep their names; so do zones of faces, for faces that are in no patch. A mesh of one layer between patches of the
+/// type `empty` becomes a mesh of the plane. Cells and faces keep their labels as sources. A field that cannot be read
+/// is left out with a warning. Throws InvalidMesh, with file and line, or byte, if the content is not right or cannot
+/// be used.
 ParsedMesh parse_openfoam(const std::filesystem::path& path, const ReadOptions& options);
 
 /// The times of a case with points, as paths CASE/TIME; before them CASE/constant at 0 if no other is at 0 or before.
@@ -53,9 +53,9 @@ std::vector<Vec3> openfoam_cell_vectors(const std::filesystem::path& path, std::
 
 /// Vector fields of a case at the points of its mesh, time by time.
 ///
-/// Fields at cells are brought there with the points of their time (mesh/point_weights.hpp). At a point of faces to which
-/// the field's file gives values, these alone count: a mean by inverse distances, but 0 if one of them is 0, as at a wall
-/// without slip. Weights are kept as long as the points stay.
+/// Fields at cells are brought there with the points of their time (mesh/point_weights.hpp). If the field's file gives
+/// values to faces at a point, these alone count. The point gets their mean, weighted with inverse distances, but 0 if
+/// one of them is 0, as at a wall without slip. Weights are kept as long as the points stay.
 class OpenFoamPointVectors {
  public:
   /// The field of CASE/TIME, in the order of parse_openfoam()'s points. Throws likewise, and if there is no such field.

@@ -13,8 +13,8 @@
 namespace dartcast {
 
 /// Ids that name no point are kept as 0xffffffff, for check_and_repair() to find. Readers put the cells of space into
-/// `mesh`, all faces into its patch faces and all edges beside it. finish() turns them into the cells and patch faces
-/// of this file.
+/// `mesh`, all faces into its patch faces and all edges beside it. Then finish() turns them into the cells and patch
+/// faces of this file.
 struct ParsedMesh {
   MeshData mesh;
   std::vector<std::array<std::uint32_t, 2>> edges;

@@ -25,8 +25,8 @@ namespace dartcast {
 /// array `free` says which cells are free if the field array free_writer of write_vtu() stands in the file. `content`
 /// is the content of the file, and the path is not used. Throws InvalidMesh.
 ParsedMesh parse_vtu(const std::filesystem::path& path, std::string_view content, const ReadOptions& options = {});
-/// The same of files that are pieces of one mesh, and of a file of several pieces: their points are joined if they
-/// have one place. Cells are left out if their array `vtkGhostType` is not 0.
+/// The same of files that are pieces of one mesh, and of a file of several pieces. Their points are joined if they have
+/// one place. Cells are left out if their array `vtkGhostType` is not 0.
 ParsedMesh parse_vtu_pieces(std::span<const std::filesystem::path> pieces, const ReadOptions& options);
 ParsedMesh parse_legacy_vtk(const std::filesystem::path& path, std::string_view content,
                             const ReadOptions& options = {});

@@ -22,9 +22,9 @@ struct XmlTag {
   [[noreturn]] void fail(std::string_view message) const;
 };
 
-/// Calls visit(tag) for each tag; <name/> is two. The bytes between <AppendedData ...> and the last </AppendedData> need
-/// not be XML, and are left out. Throws InvalidMesh, with the line, if the rest is not well-formed, has a document type,
-/// because its entities would give the file a second meaning, or nests tags more than 64 deep; and as visit().
+/// Calls visit(tag) for each tag; <name/> is two. The bytes between <AppendedData ...> and the last </AppendedData>
+/// need not be XML, and are left out. Throws as visit(), and InvalidMesh, with the line, if the rest is not
+/// well-formed, has a document type, or nests tags more than 64 deep. Entities would give the file a second meaning.
 void read_xml(std::string_view content, const std::function<void(const XmlTag&)>& visit);
 
 }  // namespace dartcast

@@ -22,7 +22,7 @@ constexpr std::array<std::array<std::uint32_t, 3>, 8> corner_steps = {
     {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
 
 // The sides xmin, xmax, ymin, ymax, zmin, zmax, counterclockwise seen from the outside. A side that is cut in two is
-// cut from its first to its third corner: from the lowest to the highest, so that neighbours agree.
+// cut from its first to its third corner. These are the lowest and the highest, so that neighbours agree.
 constexpr std::array<std::array<std::uint8_t, 4>, 6> cube_sides = {
     {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}}};
 constexpr std::array<const char*, 6> side_names = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};

@@ -76,8 +76,8 @@ struct Slice {
   }
 };
 
-// Slices of one half from the inlet to its outlet, in its own axes: the right half as it is, the left half turned by
-// half a turn about z.
+// Slices of one half from the inlet to its outlet, in its own axes. The right half stays as it is, the left half is
+// turned by half a turn about z.
 class VesselHalf {
  public:
   VesselHalf(const VesselOptions& options, const VesselSection& section, std::size_t side)

@@ -13,9 +13,9 @@ using QuadCorners = std::array<std::uint32_t, 4>;  ///< counterclockwise
 
 /// The lumen of one half is a square of core x core quads in `rings` rings of quads. Its boundary has 4 core places.
 /// Places 0 to `arc` lie on the vessel's outer wall, and arc to 4 core (which is 0 again) on the side that faces the
-/// other half: the flat side of a half disc in the trunk, the inner wall of a branch. Tissue lies in `layers` layers
-/// over the arc, and in `layers` columns over a line. The line runs along the flat side and, at both its ends, on
-/// through the tissue of the arc. The columns lie between the halves; in the trunk they have no thickness.
+/// other half. In the trunk this is the flat side of a half disc, in a branch its inner wall. Tissue lies in `layers`
+/// layers over the arc, and in `layers` columns over a line. The line runs along the flat side and, at both its ends,
+/// on through the tissue of the arc. The columns lie between the halves; in the trunk they have no thickness.
 class VesselSection {
  public:
   VesselSection(std::uint32_t core, std::uint32_t rings, std::uint32_t layers);

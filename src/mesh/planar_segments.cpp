@@ -60,10 +60,10 @@ std::optional<Obstacle> PlanarTriangulation::find_gap(std::uint32_t a, std::uint
   return std::nullopt;
 }
 
-/// Cuts off convex corners, each as soon as it is one, until nothing is left between the border and the segment, and
-/// returns the half-edge along it. Every point of the border is seen from the segment. So this ends
-/// (Toussaint and Avis). The triangles are positive and fit together in a disc, so that they cannot overlap either,
-/// even where the border runs along both sides of an edge.
+/// Cuts off convex corners, each as soon as it is one, until nothing is left between the border and the segment.
+/// Returns the half-edge along the segment. Every point of the border is seen from the segment. So this ends (Toussaint
+/// and Avis). The triangles are positive and fit together in a disc. So they cannot overlap either, even if the border
+/// runs along both sides of an edge.
 std::uint32_t PlanarTriangulation::fill(std::vector<Side>& border, std::uint32_t end, std::size_t& used) {
   struct Corner {
     std::uint32_t point;

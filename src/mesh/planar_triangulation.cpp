@@ -135,8 +135,8 @@ void PlanarTriangulation::link(std::uint32_t h, std::uint32_t twin, std::uint32_
   segment_[twin] = segment;
 }
 
-/// From triangles a b c (h from a to b) and b a d to c a d (h from a to d) and d b c (the twin from b to c): c, the
-/// corner opposite to h, is opposite to the two outer edges of a d b after.
+/// From triangles a b c (h from a to b) and b a d to c a d (h from a to d) and d b c (the twin from b to c). The corner
+/// c, opposite to h before, is then opposite to the two outer edges of a d b.
 void PlanarTriangulation::flip(std::uint32_t h) {
   const std::uint32_t t = twin_[h];
   const std::uint32_t h1 = next(h);

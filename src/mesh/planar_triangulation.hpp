@@ -68,8 +68,8 @@ class PlanarTriangulation {
     std::uint32_t segment;
     std::uint32_t now;
   };
-  /// The triangles that a segment crosses, and the sides around them: to its left from its end to its start, to its
-  /// right from its start to its end.
+  /// The triangles that a segment crosses, and the sides around them. Those to its left go from its end to its start,
+  /// those to its right from its start to its end.
   struct Gap {
     std::vector<std::uint32_t> triangles;
     std::vector<Side> left;

@@ -13,9 +13,9 @@ namespace dartcast {
 /// For each point the items around it and their weights, which sum to 1; none: nothing is around it.
 ///
 /// Weights are inverse distances to the items' centres. Those of cells are corrected so that a linear field comes out
-/// exactly, unless a weight would turn negative, as at most points of the boundary. So no value at a point leaves the
-/// range of those around it. A point's weights depend on the items around it and their order alone: a part of a mesh
-/// gives points with all their cells the same bits as the whole.
+/// exactly. They are not if a weight would turn negative, as at most points of the boundary. So no value at a point
+/// leaves the range of those around it. A point's weights depend on the items around it and their order alone. So a
+/// part of a mesh gives points with all their cells the same bits as the whole.
 struct PointWeights {
   std::vector<std::size_t> offsets = {0};  ///< points + 1
   std::vector<std::uint32_t> items;

@@ -7,7 +7,7 @@
 
 namespace dartcast {
 
-/// Whether each cell is positive and each point in range with these points. check_and_repair() then takes the mesh and
+/// Whether each cell is positive and each point in range with these points. Then check_and_repair() takes the mesh and
 /// changes nothing, because all else that it checks does not depend on places. Cost: linear, and a copy of the cells.
 /// Preconditions: check_and_repair() found `mesh` valid (its own points may be gone); one point for each of its points.
 bool stays_valid(const MeshData& mesh, std::span<const Vec3> points);

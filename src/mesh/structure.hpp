@@ -18,8 +18,8 @@ void check_arrays(const MeshData& mesh, MeshReport& report);
 /// id_out_of_range, repeated_corner.
 void check_structure(const MeshData& mesh, MeshReport& report);
 
-/// The same, but cells and patch faces whose only defect is a repeated corner get the type that they have without it, if
-/// there is one. Repairs: collapsed.
+/// The same with repairs. Cells and patch faces whose only defect is a repeated corner get the type that they have
+/// without it, if there is one. Repairs: collapsed.
 void check_and_repair_structure(MeshData& mesh, MeshReport& report);
 
 /// Drops points that no cell uses, with patch faces that name them and the values of point_data. Returns the index that

@@ -32,9 +32,9 @@ void join_borders(MeshData& surface, MeshReport& report);
 
 /// Closes all holes with triangles, in regions of their own: inlet for the largest one, outlet or outlet_1 ... for the
 /// others. Faces that had no region are in region 0. A hole whose border is off a plane by more than `tolerance` of its
-/// diameter is a defect, and nothing changes. The tolerance is a matter of taste, not of exactness: a cap's triangles end
-/// exactly at the border, however that lies. In holes that are off a plane by more than a twentieth of it, they have the
-/// least area, and cross nothing if that is found (fill_hole()).
+/// diameter is a defect, and nothing changes. The tolerance is a matter of taste, not of exactness: a cap's triangles
+/// end exactly at the border, however that lies. If a hole is off a plane by more than a twentieth of its diameter, its
+/// triangles have the least area. They cross nothing if such triangles are found (fill_hole()).
 void close_holes(MeshData& surface, MeshReport& report, double tolerance);
 
 /// Holes as a defect, with the first ones' places.

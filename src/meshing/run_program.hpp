@@ -17,8 +17,8 @@ struct ProgramEnd {
   [[nodiscard]] bool well() const { return found && in_time && status == 0; }
 };
 
-/// A new folder for temporary files, removed with all that is in it at the end: that of the object, or that of this
-/// process if a signal ends it before. A small process of its own waits for that.
+/// A new folder for temporary files. It is removed with all its content when the object ends, or when a signal ends
+/// this process before. A small process of its own waits for that.
 class TemporaryFolder {
  public:
   /// Throws Error if none can be made.

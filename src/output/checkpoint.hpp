@@ -1,5 +1,5 @@
-// Where a run can go on from: checkpoint.bin in its output folder; and, if ranks share the particles, a part for each
-// of the others, written before it.
+// The state from which a run can go on: checkpoint.bin in its output folder. If ranks share the particles, each of the
+// others has a part, written before it.
 #pragma once
 
 #include <cstdint>

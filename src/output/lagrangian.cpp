@@ -1,5 +1,5 @@
-// A run's particles as a cloud in an OpenFOAM case: a folder TIME/lagrangian/NAME for each frame, with positions, velocities
-// and ids; and TIME/uniform/lagrangian/NAME, which says that positions are given, not weights in OpenFOAM's tetrahedra.
+// A run's particles as a cloud in an OpenFOAM case. Each frame has a folder TIME/lagrangian/NAME, with positions,
+// velocities and ids. TIME/uniform/lagrangian/NAME says that positions are given, not weights in OpenFOAM's tetrahedra.
 #include <fmt/format.h>
 
 #include <algorithm>

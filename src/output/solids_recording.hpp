@@ -13,11 +13,11 @@
 
 namespace dartcast {
 
-/// For each body there is a series of its particles (body_NAME_000010.vtp, body_NAME.pvd) and of the surface that follows
-/// them (surface_NAME_...). For each catheter there are its points (catheter_NAME_...) and, if the scene wants them, a
-/// camera's places along it (camera_NAME_...). For each solid there are its vertices and faces (solid_NAME_...).
-/// bodies.csv, catheters.csv and solids.csv have a row per step and body, catheter or solid. solid_contacts.csv has their
-/// contacts, if the scene wants contacts.
+/// For each body there is a series of its particles (body_NAME_000010.vtp, body_NAME.pvd) and of the surface that
+/// follows them (surface_NAME_...). For each catheter there are its points (catheter_NAME_...) and, if the scene wants
+/// them, a camera's places along it (camera_NAME_...). For each solid there are its vertices and faces
+/// (solid_NAME_...). The tables bodies.csv, catheters.csv and solids.csv have a row per step and body, catheter or
+/// solid. Their contacts are in solid_contacts.csv, if the scene wants contacts.
 class SolidsRecording final : public Recorder {
  public:
   SolidsRecording(const RunFolder& run, const Scene& scene);

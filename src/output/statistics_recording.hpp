@@ -13,9 +13,9 @@
 
 namespace dartcast {
 
-/// Writes what the scene wants: walls.pvd with a .vtp per frame; planes.csv, a row per plane and interval between
-/// frames; crossings.csv, a row per crossing; pathlines.bin, to which points are added, and from it pathlines.vtp at the
-/// end.
+/// Writes the files that the scene wants. Walls are in walls.pvd, with a .vtp per frame. A row of planes.csv is a plane
+/// and an interval between frames, one of crossings.csv a crossing. Points are added to pathlines.bin; from it comes
+/// pathlines.vtp at the end.
 class StatisticsRecording final : public Recorder {
  public:
   StatisticsRecording(const RunFolder& run, const Scene& scene, std::uint64_t every);

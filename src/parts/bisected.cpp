@@ -1,8 +1,8 @@
 // Recursive bisection without sorting.
 //
-// All groups of cells that still hold several parts are split at the same time. Phases of such a level: find each group's
-// longest side; find the cell at its wanted weight, digit by digit of its place on that side; send the others left or
-// right of it. Ranks add up numbers for each group, never cells.
+// All groups of cells that still hold several parts are split at the same time. Phases of such a level: Find each
+// group's longest side. Find the cell at its wanted weight, digit by digit of its place on that side. Send the others
+// left or right of it. Ranks add up numbers for each group, never cells.
 #include "parts/bisected.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // Cuts parts out of a mesh.
 //
-// Phases of a cut: take the points of the cells, in their order; copy what belongs to these; name the faces that have lost
-// the cell behind them.
+// Phases of a cut: Take the points of the cells, in their order. Copy all that belongs to these. Name the faces that
+// have lost the cell behind them.
 #include "parts/part_cutter.hpp"
 
 #include <algorithm>

@@ -3,16 +3,16 @@
 //
 // Phases: an axis that separates; the cubic of the volume, if it has one sign; else [0, 1] is halved, the earlier part
 // first. Forms are kept as Bernstein's coefficients. A part is
-// - free, if the volume has one sign; or if in some projection two minors of a vertex and a face have opposite signs
-//   throughout, or both ends of an edge lie on one side of the other edge. Both hold for flat triangles and parallel
-//   edges, too;
+// - free, if the volume has one sign. It is free, too, if in some projection two minors of a vertex and a face have
+//   opposite signs throughout. So it is if both ends of an edge lie on one side of the other edge. Both hold for flat
+//   triangles and parallel edges, too;
 // - a touch, if the volume has proved and opposite signs at its ends, and in some projection all points that are coplanar
 //   would touch. Then the volume alone is halved further, to find the time.
 //
-// Bounds, with n halvings, and e = 2^-53, or DoubleDouble::rounding: an exact coefficient of the volume differs from the computed one by at most
-// (66 + 18 n) e m, one of a minor by (10 + 4 n) e m_k. Here m is the product of the largest |x|, |y| and |z| among the
-// differences of points, and m_k of two of these. The factor 1 + 2^-10 covers terms of second order. Products that
-// underflow are far below the bound in the range that in_range() admits.
+// Bounds, with n halvings, and e = 2^-53, or DoubleDouble::rounding. An exact coefficient of the volume differs from
+// the computed one by at most (66 + 18 n) e m, one of a minor by (10 + 4 n) e m_k. Here m is the product of the largest
+// |x|, |y| and |z| among the differences of points, and m_k of two of these. The factor 1 + 2^-10 covers terms of
+// second order. Products that underflow are far below the bound in the range that in_range() admits.
 #include "predicates/moving_pair.hpp"
 
 #include <algorithm>

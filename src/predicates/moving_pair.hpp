@@ -1,8 +1,8 @@
 // A moving vertex and a moving triangle, or two moving edges: whether they touch during a step, and when.
 //
-// All points move straight, from `from` at time 0 to `to` at time 1. Both elements are closed sets. The decision is exact
-// for the doubles given: coplanar motion, parallel edges, edges without length, flat triangles, multiple roots and
-// contact at 0 and at 1 included.
+// All points move straight, from `from` at time 0 to `to` at time 1. Both elements are closed sets. The decision is
+// exact for the doubles given. This includes coplanar motion, parallel edges, edges without length, flat triangles,
+// multiple roots and contact at 0 and at 1.
 //
 // A filter in doubles answers most pairs. It either proves its answer or gives none. The same filter in double-doubles answers
 // most of the others; integers decide the rest.

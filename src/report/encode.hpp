@@ -25,9 +25,9 @@ struct QuantisedBox {
   bool empty_ = true;
 };
 
-/// Values of several frames as bytes: the first frame as it is, the second as differences from the first, all others as
-/// differences of differences; modulo 2^16, signs in the lowest bit; all low bytes, then all high bytes. `values`:
-/// `each` for a frame, frame by frame. Smooth motions become small numbers, which compress well.
+/// Values of several frames as bytes. The first frame stays, the second is differences from the first, all others are
+/// differences of differences. They are modulo 2^16, signs in the lowest bit; all low bytes come before all high bytes.
+/// `values`: `each` for a frame, frame by frame. Smooth motions become small numbers, which compress well.
 std::string second_differences(std::span<const std::uint16_t> values, std::size_t each);
 /// The same with differences alone, modulo 2^8.
 std::string first_differences(std::span<const std::uint8_t> values, std::size_t each);

@@ -1,7 +1,7 @@
 // Packs and unpacks the parts of report.bin.
 //
-// Phases of reading: the list of chunks; then each chunk by itself, with its lengths and numbers checked, so that what
-// comes after can trust them.
+// Phases of reading: the list of chunks; then each chunk by itself. Its lengths and numbers are checked, so that later
+// code can trust them.
 #include "report/recorded.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // The parts of report.bin: all that a report shows of the scene, recorded by a run as it goes. Not installed.
 //
-// The file is a row of chunks, each a tag, its size and its bytes. So a run can append to it, a run that is resumed can
-// cut it off, and a reader can skip what it does not need. Positions are floats relative to an origin.
+// The file is a row of chunks, each a tag, its size and its bytes. So a run can append to it, a resumed run can cut it
+// off, and a reader can skip what it does not need. Positions are floats relative to an origin.
 #pragma once
 
 #include <array>
@@ -136,8 +136,8 @@ class RecordedFile {
   };
   /// The moment of a frame, without the rest of it.
   [[nodiscard]] Moment moment(const Chunk& frame) const;
-  /// The part of a chunk with its tag. A part that is returned is consistent: lists that belong together have one
-  /// length, numbers of points are below their count, and every coordinate is finite.
+  /// The part of a chunk with its tag. A returned part is consistent: lists that belong together have one length,
+  /// numbers of points are below their count, and every coordinate is finite.
   template <class Part>
   [[nodiscard]] Part read(const Chunk& chunk) const;
 

@@ -5,8 +5,8 @@
 
 namespace dartcast {
 
-/// CSS. Each of the colours c0 to c7 has a contrast of 3 or more to the page, and any two of them differ for all kinds of
-/// colour-blind people (tests/report/colours_test.cpp); the first two are of M. Okabe and K. Ito. The viewer and the
+/// CSS. Each of the colours c0 to c7 has a contrast of 3 or more to the page. Any two of them differ for all kinds of
+/// colour-blind people (tests/report/colours_test.cpp). The first two are of M. Okabe and K. Ito. The viewer and the
 /// charts use the variables.
 inline constexpr std::string_view page_style = R"css(
 :root{--background:#fff;--panel:#f6f7f9;--text:#1b1f24;--muted:#5b6570;--line:#aab3bd;--faint:#e3e7eb;--accent:#0072b2;--wall:#cfd6de;--rim:#66788c;--axis-y:#2e7d32;

@@ -1,7 +1,7 @@
 // Makes the viewer's data from a recording.
 //
-// Phases: choose frames and particles; read the chosen frames, and put each particle's values into its slot; find the
-// box of all positions; code series of values in groups of frames; sort the contacts by slot; describe all in JSON.
+// Phases: Choose frames and particles. Read the chosen frames, and put each particle's values into its slot. Find the
+// box of all positions. Code series of values in groups of frames. Sort the contacts by slot. Describe all in JSON.
 #include "report/viewer_data.hpp"
 
 #include <fmt/format.h>
@@ -247,8 +247,8 @@ class Builder {
     return all[static_cast<std::size_t>(place)];
   }
 
-  // The frame to open on: of those after the last change of the scene, the one with most different places and speeds of
-  // particles; without particles the last one.
+  // The frame to open on. Among those after the last change of the scene it is the one with most different places and
+  // speeds of particles. Without particles it is the last one.
   std::size_t opening_frame() const {
     double changed = -std::numeric_limits<double>::infinity();
     for (const ViewerJson& e : json_["events"]) changed = std::max(changed, e["time"].get<double>());

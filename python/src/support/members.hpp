@@ -1,9 +1,9 @@
 // Definitions that call one function of C++: functions, methods and properties of objects in handles.
 //
-// A handle has functions `call(f)` and, where Python may change its object, `change(f)`: they call f(object) under the
-// object's mark of use, and change() without Python's lock. Arguments are copies, for another thread may change what Python holds;
-// arrays of points are not. Results are copies, too. Names of arguments, defaults and docstrings are those of the headers,
-// but for a text that is given here.
+// A handle has functions `call(f)` and, if Python may change its object, `change(f)`. They call f(object) under the
+// object's mark of use, and change() without Python's lock. Arguments are copies, for another thread may change what
+// Python holds; arrays of points are not. Results are copies, too. Names of arguments, defaults and docstrings are
+// those of the headers, but for a text that is given here.
 #pragma once
 
 #include <pybind11/pybind11.h>

@@ -32,8 +32,8 @@ void check_arrays(const MeshData& mesh);
 /// The text of a mesh's first defect, with its first places.
 std::string first_defect(const MeshReport& report);
 
-/// Throws FileNotFoundError where there is no such file, and InvalidArgument that names the right call where it is a
-/// surface, unless a mesh was read from it.
+/// Does nothing if a mesh was read from the file. Throws FileNotFoundError if there is no such file. Throws
+/// InvalidArgument, which names the right call, if it is a surface.
 void expect_mesh_file(const std::filesystem::path& path, const MeshFile& file);
 
 /// A copy as check_and_repair() repairs it. Throws InvalidMesh, with the first defect, where that refuses it. May be

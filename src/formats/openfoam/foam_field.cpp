@@ -114,8 +114,8 @@ PatchEntryValues read_patch_entry(FoamFile& file, std::size_t components, const 
   return entry;
 }
 
-// By POSIX, whose patterns take a time in proportion to the name if they have no back references; counts in braces take
-// memory by their product. A long name or a hostile pattern overflows the stack of std::regex, or takes it for ever.
+// By POSIX: without back references it takes a time in proportion to the name, and memory in proportion to the product
+// of counts in braces. A long name or a hostile pattern overflows the stack of std::regex, or takes it for ever.
 bool matches(const std::string& pattern, const std::string& name) {
   const auto refers_back = [&](std::size_t i) {
     return pattern[i] == '\\' && std::isdigit(static_cast<unsigned char>(pattern[i + 1])) != 0;

@@ -1,6 +1,6 @@
 // The addressing files of each part say which label of the whole a point, face or cell has. A face between two parts is
-// in both: in the part of its owner with a positive sign, in the other one turned over, with a negative sign. The two faces
-// of a cyclic pair on two parts are in a patch of each (processorCyclic), and belong to the patch that this one refers to.
+// in both. It has a positive sign in the part of its owner. In the other it is turned over, with a negative sign. A
+// cyclic pair on two parts has a face in a patch of each (processorCyclic). Both belong to the patch that it refers to.
 #include "formats/openfoam/merge_parts.hpp"
 
 #include <fmt/format.h>

@@ -21,9 +21,9 @@ bool has_empty_faces(const PolyMesh& mesh);
 /// Takes the points.
 ParsedMesh mesh_in_space(PolyMesh mesh);
 
-/// The mesh in the plane, of one layer between faces in patches of the type `empty`: the corners of the lower face of
-/// each cell, with z = 0. `kept`: the labels of its points. Throws InvalidMesh if there is more than one layer, or
-/// the layer is not across z.
+/// The mesh in the plane, of one layer between faces in patches of the type `empty`. Each cell has the corners of its
+/// lower face, with z = 0. `kept`: the labels of its points. Throws InvalidMesh if there is more than one layer, or the
+/// layer is not across z.
 ParsedMesh mesh_in_plane(const PolyMesh& mesh, std::vector<std::uint32_t>& kept);
 
 /// The corners that a face has in the new mesh, none if it is no face of it. Valid until the next call.

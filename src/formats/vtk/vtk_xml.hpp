@@ -32,8 +32,8 @@ struct VtkXmlFile {
 /// Reads all tags of a file of this kind, "UnstructuredGrid" or "PolyData". VTK finds sections and arrays by their
 /// names and by their order, and does not stop if one is missing. So each section must be in its place, once, and
 /// hold nothing but arrays. Each array must have a unique name in its section. All pieces must have the same arrays
-/// at points and cells. Throws InvalidMesh, with the line or the array, if that does not hold, if a tag is
-/// damaged, or if the file is of another kind. Sizes and data are not checked.
+/// at points and cells. Throws InvalidMesh, with the line or the array, if that does not hold, a tag is damaged, or the
+/// file is of another kind. Sizes and data are not checked.
 VtkXmlFile read_vtk_xml(std::string_view content, std::string_view kind);
 
 }  // namespace dartcast
