@@ -87,8 +87,8 @@ struct Determinants {
     if constexpr (N == 4) return (value[0] + value[1]) + (value[2] + value[3]);
     return (value[0] + value[1]) + value[2];
   }
-  /// Whether the sum exceeds its errors: those of the values, and the rounding of three sums of values that are at most
-  /// 6 m each (m = bound / determinant_error).
+  /// Whether the sum exceeds its errors: those of the values, and the rounding of three sums of values of at most 6 m
+  /// each (m = bound / determinant_error).
   [[nodiscard]] bool proves_positive() const { return volume6() > 8.0 * bound; }
   /// The values over their sum are the coordinates of a point of the simplex, accurate to 2^-26. Each value is off by
   /// at most the bound, and the sum by eight times that.

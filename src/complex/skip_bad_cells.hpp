@@ -22,7 +22,7 @@ bool is_of_bad_cells(std::string_view defect);
 ///
 /// Their faces at other cells become walls without a patch, so that every guarantee holds for the rest. Regions,
 /// arrays, patches and `source` are kept. The mesh is then as check_and_repair() leaves it. Returns a finding of kind
-/// "bad_cells" with their number and the first of them, as indices in the input; an empty one if the mesh is good.
+/// "bad_cells" with their number and the first of them, as indices in the input. It is empty if the mesh is good.
 /// Throws InvalidMesh if the mesh has other defects, or no cell remains. Cost: that of check_and_repair() and of
 /// building a complex, once more for each kind of bad cell.
 Finding skip_bad_cells(MeshData& mesh, Threads threads = {});

@@ -52,7 +52,7 @@ struct VolumeCubic {
   double m;      ///< product of the largest |x|, |y| and |z| among the edges from corner 0, before and after
   bool applies;  ///< whether the bound below holds
 
-  /// With edges p before and q after: c0 = [p1 p2 p3], c1 = [q1 p2 p3] + [p1 q2 p3] + [p1 p2 q3], c2 likewise.
+  /// Edges: p before, q after. Then c0 = [p1 p2 p3], c1 = [q1 p2 p3] + [p1 q2 p3] + [p1 p2 q3], c2 likewise.
   VolumeCubic(const EndsVec3& v0, const EndsVec3& v1, const EndsVec3& v2, const EndsVec3& v3) {
     const EndsVec3 e1 = v1 - v0;
     const EndsVec3 e2 = v2 - v0;
@@ -74,9 +74,9 @@ struct VolumeCubic {
       : VolumeCubic(ends_of(before[0], after[0]), ends_of(before[1], after[1]), ends_of(before[2], after[2]),
                     ends_of(before[3], after[3])) {}
 
-  /// Each coefficient is off by at most this times m. c1 and c2 are 18 products of at most m, each rounded ten times
-  /// (three differences, product, difference, sum, product, two sums, sum), each by e = 2^-53. c0 and c3 are off by
-  /// determinant_error. The last factor is that of determinant_error.
+  /// Each coefficient is off by at most this times m. Both c1 and c2 are 18 products of at most m, each rounded ten
+  /// times (three differences, product, difference, sum, product, two sums, sum), each by e = 2^-53. Both c0 and c3 are
+  /// off by determinant_error. The last factor is that of determinant_error.
   static constexpr double coefficient_error = 180.0 * 0x1p-53 * (1.0 + 0x1p-10);
 
   [[nodiscard]] bool proves_positive() const { return applies && all_above(c, coefficient_error * m); }

@@ -154,8 +154,8 @@ class Coarsener {
     rework_.draft(whole_) = std::move(whole);
   }
 
-  // Merges the faces around a vertex in the middle of a side, if there is at most one cell beyond them and no other
-  // cell needs them.
+  // Merges the faces around a vertex in the middle of a side. It does so if there is at most one cell beyond them, and
+  // no other cell needs them.
   void merge_faces_around(Vertex v) {
     std::vector<const DraftFace*> around;
     for (const DraftFace& f : rework_.draft(whole_).faces) {

@@ -40,9 +40,9 @@ struct TrafficCounts {
 /// One rank's part. Its functions are collective.
 class PartEnvironment {
  public:
-  /// `environment`: made of the part's mesh. All outlive it. Throws InvalidMesh if the ranks' parts are not of one mesh:
-  /// a ghost is not, corner by corner, a cell of the rank that should have it. Throws InvalidArgument in the plane, and if
-  /// cells need Steiner points.
+  /// `environment`: made of the part's mesh. All outlive it. Throws InvalidMesh if the ranks' parts are not of one
+  /// mesh. Each ghost must be, corner by corner, a cell of the rank that should have it. Throws InvalidArgument in the
+  /// plane, and if cells need Steiner points.
   PartEnvironment(Environment& environment, const MeshPart& part, Ranks& ranks);
 
   /// Replaces the environment by one of this part, which the rank has from now on, as PartEnvironment() takes it. References

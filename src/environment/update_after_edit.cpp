@@ -44,7 +44,7 @@ class EditFollower {
     std::sort(removed_.begin(), removed_.end());
   }
 
-  // For particles that were not advanced between a move and the edit: the vertices carry them along, as in a step
+  // For particles that were not advanced between a move and the edit. The vertices carry them along, as in a step
   // without a motion of their own. Those in removed cells get their new positions, and keep the names of these cells
   // for update_after_edit().
   void carry_with_mesh(Threads threads) {

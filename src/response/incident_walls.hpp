@@ -34,10 +34,10 @@ class JointWalls {
   std::span<const WallHit> joined_;
 };
 
-/// A vector counts as pointing into no wall if it does so by at most this share of the length of the vector that the
-/// walls were given. A projection meets the walls that it was made on up to some ten roundings of 2^-53. (Normals are
-/// of length 1 up to four of them, and creases are made orthogonal twice.) 2^-46 is 128 of them. A vector that exceeds
-/// it is never returned, so that the share bounds every result. No decision of a walk depends on it.
+/// The walls were given a vector. Another one counts as pointing into no wall if it does so by at most this share of
+/// the length of the first. A projection meets the walls that it was made on up to some ten roundings of 2^-53.
+/// (Normals are of length 1 up to four of them, and creases are made orthogonal twice.) 2^-46 is 128 of them. A vector
+/// that exceeds it is never returned, so that the share bounds every result. No decision of a walk depends on it.
 inline constexpr double rounding_share = 0x1p-46;
 
 /// Whether v points into a wall by more than `limit`.
@@ -69,7 +69,7 @@ Vec3 shortened(const Vec3& velocity, double limit, const Vec3& lead);
 namespace detail {
 
 /// The part b of a rebound with the speed y >= 0. With it the energy of the moment is the energy before, less the part
-/// that restitution took: y^2 / 2 + y l = b^2 / 2 + lead . blocked.
+/// that restitution took. This means y^2 / 2 + y l = b^2 / 2 + lead . blocked.
 inline Vec3 rebound_of_moment(const Vec3& b, const Vec3& blocked, const Vec3& lead) {
   const double speed = norm(b);
   if (!(speed > 0.0)) return b;
@@ -81,19 +81,19 @@ inline Vec3 rebound_of_moment(const Vec3& b, const Vec3& blocked, const Vec3& le
 
 }  // namespace detail
 
-/// The velocity after one impact on all walls that hold v back: these impulses enlarged by 1 + restitution (J. J.
-/// Moreau, "Unilateral contact and dry friction in finite freedom dynamics", 1988), and the rest along the walls
-/// less the part that Coulomb's law takes. It may point into a wall that v did not point into. `surface_of(wall,
-/// into)`: `into` is the speed at which v points into it.
+/// The velocity after one impact on all walls that hold v back. These impulses are enlarged by 1 + restitution (J. J.
+/// Moreau, "Unilateral contact and dry friction in finite freedom dynamics", 1988), and the rest along the walls loses
+/// the part that Coulomb's law takes. It may point into a wall that v did not point into. `surface_of(wall, into)`:
+/// `into` is the speed at which v points into it.
 ///
-/// v is the velocity at the end of the step, and v + lead that of the moment of the contact: with a constant
-/// acceleration a and the contact at a share t of the step dt the lead is (t - 1/2) dt a, otherwise 0. The kinetic
-/// energy of the moment, |v + lead|^2 / 2, never grows (docs/method.md, "Reflection"): P = held_back(v) is orthogonal
-/// to the impulses L = P - v (each wall that holds it is met exactly), so that |v|^2 = |P|^2 + |L|^2. The rebound
-/// B is a sum of the same impulses, each times its restitution <= 1, and is not longer than L: with one restitution by
-/// itself, else it is shortened. Friction shortens P. So |P + B|^2 = |P|^2 + |B|^2 <= |v|^2, up to rounding;
+/// Let v be the velocity at the end of the step, and v + lead that of the moment of the contact. With a constant
+/// acceleration a and the contact at a share t of the step dt, the lead is (t - 1/2) dt a, otherwise 0. The kinetic
+/// energy of the moment, |v + lead|^2 / 2, never grows (docs/method.md, "Reflection"). Proof: P = held_back(v) is
+/// orthogonal to the impulses L = P - v (each wall that holds it is met exactly), so that |v|^2 = |P|^2 + |L|^2. The
+/// rebound B is a sum of the same impulses, each times its restitution <= 1. It is not longer than L: by itself with
+/// one restitution, else shortened. Friction shortens P. So |P + B|^2 = |P|^2 + |B|^2 <= |v|^2, up to rounding. Then
 /// shortened() takes the rounding away: as computed, dot(result, result) <= dot(v, v). With a lead, the same holds for
-/// the energy of the moment, but for the energy that a particle at rest keeps: |lead|^2 / 2 at most.
+/// the energy of the moment, but for the energy that a particle at rest keeps. This is |lead|^2 / 2 at most.
 template <class SurfaceOf>
 Vec3 after_impact(const Vec3& v, const JointWalls& walls, const SurfaceOf& surface_of, const Vec3& lead = {}) {
   const HeldBack held = held_back(v, walls);

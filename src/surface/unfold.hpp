@@ -33,7 +33,7 @@ struct Frame {
 bool has_area(const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// Lays out a triangle with an area, with the base from a to b. Each number is accurate to a few units in the last
-/// place of the longest edge, and the height to a relative 2^-44, however thin the triangle is.
+/// place of the longest edge. The height is accurate to a relative 2^-44, however thin the triangle is.
 Unfolded unfold(const Vec3& a, const Vec3& b, const Vec3& c);
 
 Frame frame_of(const Vec3& a, const Vec3& b, const Vec3& c);

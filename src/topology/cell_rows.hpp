@@ -1,5 +1,5 @@
-// The ways through a hexahedron, from the face that a walk enters by to the triangle that it leaves by, for walks that
-// pass whole cells (tracking/batch/batch_cell_walks.inl).
+// The ways through a hexahedron, for walks that pass whole cells (tracking/batch/batch_cell_walks.inl). A way goes from
+// the face of entry to the triangle of exit.
 //
 // The entry face has corners a0 to a3, which turn around the direction of travel. Corner b_i is at the other end of
 // the edge from a_i. So the lateral face i has the corners a_i, a_(i+1), b_(i+1), b_i, and the far face has b0 to b3.

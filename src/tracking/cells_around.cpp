@@ -1,7 +1,7 @@
 // Cuts the cells around a particle's way out of a scene.
 //
-// Phases: choose the cells; number their points in the order of the whole scene; copy the cells; mark walls between free
-// cells, and faces whose other side is left out; number the state's cells anew.
+// Phases: Choose the cells. Number their points in the order of the whole scene. Copy the cells. Mark walls between
+// free cells, and faces whose other side is left out. Number the state's cells anew.
 #include "tracking/cells_around.hpp"
 
 #include <algorithm>

@@ -47,7 +47,7 @@ SimplexId find_in(const CellComplex& complex, Cell c, const Vec3& x) {
   return find_in(complex, c, [&](const auto& corners) { return detail::in_closed_simplex(corners, x); });
 }
 
-// Whether the closed simplex holds x and the start of the way from there to `inner`: no facet that x lies on has
+// Whether the closed simplex holds x and the start of the way from there to `inner`. Then no facet that x lies on has
 // `inner` behind it.
 template <std::size_t N>
 bool holds_way(const std::array<Vec3, N>& corners, const Vec3& x, const Vec3& inner) {

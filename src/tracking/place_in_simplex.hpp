@@ -52,8 +52,8 @@ class WallPlanes {
   unsigned count_ = 0;
 };
 
-/// The k-th distance to lift x by, which was computed from p: one unit in the last place of the larger of the two,
-/// doubling. p shows how large the rounding is: x alone may be next to the origin.
+/// The k-th distance to lift x, which was computed from p. It is one unit in the last place of the larger of the two,
+/// doubled k times. The size of p shows how large the rounding is: x alone may be next to the origin.
 inline double lift_distance(const Vec3& p, const Vec3& x, int k) {
   const double largest =
       std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z), std::abs(x.x), std::abs(x.y), std::abs(x.z)});
@@ -259,8 +259,8 @@ std::optional<SimplexPlacement> lifted(const Space<Positions, N>& space, Simplex
 /// Puts x, a point rounded out of the closed simplex `simplex` (with corners v), into a free closed simplex. These are
 /// tried in order:
 /// 1. Lift x off the facets that it is behind, one unit in the last place at first, doubling.
-/// 2. Walk to x from a point p of the simplex, and lift x off the walls in the way. p is the mean of the corners if
-///    that is exactly inside, else the corner nearest to x.
+/// 2. Walk to x from a point p of the simplex, and lift x off the walls in the way. This p is the mean of the corners
+///    if that is exactly inside, else the corner nearest to x.
 /// 3. If the walls are too close together for that, search a double between them
 ///    (tracking/representable_point.hpp).
 /// 4. Take p or the corner nearest to x.

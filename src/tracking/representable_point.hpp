@@ -103,8 +103,8 @@ class Coordinates {
   std::array<double, N> steepness_;
 };
 
-/// The effect of a step on the coordinates, as shares of the loss allowed to each, and on the place, as shares of the
-/// distance allowed.
+/// The effect of a step on the coordinates, as shares of the loss allowed to each. Its effect on the place, as shares
+/// of the distance allowed.
 template <std::size_t N>
 using Effect = std::array<double, N + 3>;
 

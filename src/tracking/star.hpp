@@ -220,9 +220,9 @@ struct SimplexFacet {
   std::uint16_t facet = 0;
 };
 
-/// A wall facet that holds `feature`, spanned by the corners of a simplex that have no bit set in `zeros`; nothing
-/// if search_walls() finds none from there. Cost: constant inside a face, else linear in the star. Precondition: 1
-/// to N - 1 bits are set.
+/// A wall facet that holds `feature`, which the corners of a simplex without a bit in `zeros` span. Returns nothing if
+/// search_walls() finds none from there. Cost: constant inside a face, else linear in the star. Precondition: 1 to
+/// N - 1 bits are set.
 template <std::size_t N = 4>
 std::optional<SimplexFacet> find_wall(const CombinatorialMap& map, SimplexId simplex, unsigned zeros,
                                       const Feature& feature) {

@@ -1,14 +1,14 @@
 // The exact walk along a segment, through simplices, up to its end or to the first wall.
 //
-// After T. Jund, D. Cazier, J.-F. Dufourd, SPM 2009, section 5, made exact: every decision is the sign of a determinant
-// of vertices and of the segment's ends, and ties are broken by an infinitesimal shift of the whole segment
-// (docs/method.md). The walk ends in the first closed simplex that holds q.
+// After T. Jund, D. Cazier, J.-F. Dufourd, SPM 2009, section 5, made exact. Every decision is the sign of a determinant
+// of vertices and of the segment's ends. An infinitesimal shift of the whole segment breaks ties (docs/method.md). The
+// walk ends in the first closed simplex that holds q.
 //
 // Up to there it is the walk of the shifted segment. The shifted walk leaves a simplex by the first facet that the
 // shifted q is beyond. Suppose that q itself is strictly beyond some facet. Then a facet whose plane holds q is never
-// the first. The segment meets that plane at its end, or lies in it and is shifted to the inner side, since the shifted
-// segment passes through the simplex. So only facets that q is strictly beyond count, and ties occur only between two
-// of these.
+// the first. The segment meets that plane at its end, or lies in it. If it lies in it, the shift is to the inner side,
+// because the shifted segment passes through the simplex. So only facets that q is strictly beyond count, and ties
+// occur only between two of these.
 #pragma once
 
 #include <bit>
@@ -239,9 +239,9 @@ void find_wall_at_end(const CombinatorialMap& map, Walk& walk) {
   walk.wall_facet = static_cast<std::uint8_t>(wall->facet);
 }
 
-/// Ends a walk that has come to its first wall, or to the closed simplex that holds q. `restarted`: it has begun anew, from
-/// a wall that p lies on. If `leaves(walk, start)` holds, it is returned as it is; start: of a walk that begins anew here,
-/// else null. always_inline: g++ 12 would call it from both.
+/// Ends a walk that has come to its first wall, or to the closed simplex that holds q. `restarted`: it has begun anew,
+/// from a wall that p lies on. If `leaves(walk, start)` holds, the walk is returned as it is. `start`: that of a walk
+/// that begins anew here, else null. It is always_inline because g++ 12 would call it from both.
 template <class Positions, std::size_t N, class Visitor, class Leaves>
 [[gnu::always_inline]] inline Walk end_walk(const Space<Positions, N>& space, Walk walk, bool restarted, const Vec3& p,
                                             const Vec3& q, TestCounts& counts, Visitor& visit, const Leaves& leaves) {
@@ -271,10 +271,10 @@ Walk end_walk(const Space<Positions, N>& space, const Walk& walk, const Vec3& p,
 
 }  // namespace detail
 
-/// Walks from p to q. Preconditions: p lies in the closed simplex `start` of a free cell; p and q are finite and in the
-/// exact range; p differs from q. Cost: three or four orientation tests in each simplex met, whatever the size of the
-/// scene; in the plane two or three. Throws InternalError with a replay if a walk among valid cells does not end
-/// (guarantee G4: a bug).
+/// Walks from p to q. Preconditions: p lies in the closed simplex `start` of a free cell. Both p and q are finite and
+/// in the exact range, and p differs from q. Cost: three or four orientation tests in each simplex met, whatever the
+/// size of the scene; in the plane two or three. Throws InternalError with a replay if a walk among valid cells does
+/// not end (guarantee G4: a bug).
 template <class Positions, std::size_t N, class Visitor = NoVisitor>
 Walk walk(const Space<Positions, N>& space, SimplexId start, const Vec3& p, const Vec3& q, TestCounts& counts,
           Visitor&& visit = {}) {

@@ -1,12 +1,12 @@
 // The steps of many particles at once, as far as floating-point filters alone decide them: the usual case, made fast.
 //
-// The batch makes no decision of its own. Where a sign is not proved, or anything else is out of the ordinary, it
-// defers the step to Stepper (tracking/step.hpp) and leaves it as it was. Both have the same result wherever both take
-// a step: ties between facets are broken by the walk's own functions. The batch walks up to the first wall; Stepper
-// continues from there. Where a step is split, the batch walks its first slice, if the target is far; and where particles
-// stop at walls, it says where the mesh carries them by the end. Only the counts may differ. Walks to far targets ask
-// other questions. And where rounding carries a particle out of its simplex, Stepper puts it back and walks from there,
-// though its target is inside.
+// The batch makes no decision of its own. If a sign is not proved, or anything else is out of the ordinary, it defers
+// the unchanged step to Stepper (tracking/step.hpp). Both have the same result if both take a step: ties between
+// facets are broken by the walk's own functions. The batch walks up to the first wall; Stepper continues from there.
+// If a step is split and the target is far, the batch walks its first slice. If particles stop at walls, it says where
+// the mesh carries them by the end. Only the counts may differ. Walks to far targets ask other questions. And if
+// rounding carries a particle out of its simplex, Stepper puts it back and walks from there, though its target is
+// inside.
 #pragma once
 
 #include <cstddef>
@@ -36,8 +36,8 @@ struct BatchScene {
   bool stops = false;       ///< particles stop at the first wall: nothing responds
 };
 
-/// How much of a step the batch did: all, nothing, or, where the step has come to its first wall or to the end of the
-/// first of its slices, the number of its StepState; its state is unchanged then.
+/// How much of a step the batch did: all, nothing, or the number of its StepState. A number means that the step has
+/// come to its first wall, or to the end of its first slice; its state is unchanged then.
 using StepStatus = std::uint16_t;
 inline constexpr StepStatus step_complete = 0xffff;
 inline constexpr StepStatus step_untouched = 0xfffe;

@@ -35,7 +35,7 @@ inline void store_previous_geometry(const BatchDeterminants& d, SimplexCache4& c
   }
 }
 
-// Whether a number has no more than 29 bits: its product with a float is then exact. x + 2^24 x is rounded to a
+// Whether a number has no more than 29 bits: its product with a float is then exact. The sum x + 2^24 x is rounded to a
 // multiple of the last place of 2^24 x, which is the 29th place of x.
 inline Mask4 has_short_mantissa(const Double4& x) {
   const Double4 far = x * splat(0x1p+24);
@@ -59,11 +59,11 @@ inline Mask4 is_zero(const Vec3x4& g, const Double4& w, const Vec3x4& q) {
 // the inward normal of its facet over the volume.
 //
 // ask_exact: returns a bit for each lane in which the coordinates are exact. This holds for lanes in which p is in the
-// closed simplex and arithmetic on the differences of p and the corners rounds nothing (rounds_nothing() in
-// dartcast/predicates.hpp). Then the normals are exact. The volume is exact, too: it is a sum of determinants, none of
-// which is negative. A function is exact where it has the right gradient and is zero at a corner of the facet.
-// Differences are below 2^16 units. Where p is within 2^12 of the largest one, corners are below 2^29 units, and have
-// few bits.
+// closed simplex and the differences of p and the corners pass rounds_nothing() (dartcast/predicates.hpp).
+// Then the normals are exact. The volume is exact, too: it is a sum of determinants, none of which is
+// negative. A function is exact if it has the right gradient and is zero at a corner of the facet. Differences
+// are below 2^16 units. If p is within 2^12 of the largest one, corners are below 2^29 units, and have few
+// bits.
 template <bool ask_exact>
 inline unsigned store_barycentric(const BatchDeterminants& d, const Vec3x4& p, SimplexCache4& caches) {
   const Double4 volume = d.volume6();
@@ -158,8 +158,8 @@ inline Weights shares_of(Weights w) {
 // Let L be the old distance of the farthest corner. Floats round the old corners by 2^-24 L. The doubles of the rule
 // round u_i by at most as much, as |q - p| and |d_i| are below 2^28 L. So the coordinates of d_i, u_i, n_i and the
 // edges are off by 2^-24 L, 3 2^-24 L, 2^-20 L^2 and 2^-23 L. In squares, (a + b)^2 <= 17/16 a^2 + 17 b^2 bounds that.
-// The rule's r is off by 2^-49 |q| as well, which is less than an eighth of 2^-24 L, and by as much of the d_i.
-// Products reach L^12: with L in [2^-70, 2^70] those on the left neither overflow nor underflow.
+// The rule's r is off by 2^-49 |q| as well, which is less than an eighth of 2^-24 L. The d_i add as much. Products
+// reach L^12: with L in [2^-70, 2^70] those on the left neither overflow nor underflow.
 class OnePart {
  public:
   // `after`: the moved corners relative to the targets q; p: where the particles were.

@@ -2,9 +2,9 @@
 // kernel.
 //
 // Corners are projected along the line as in batch_line_walks.inl, then rounded to floats. A cell has twelve triangles.
-// Ten are asked about, all but those of the face that was entered by. Where the line leaves the cell by one of the
-// ten alone, and each corner of that face is before the target, the walk from simplex to simplex leaves by this
-// triangle, too (tracking/batch/line_bounds.hpp). Simplices are not looked at. So the cell must be known to be positive.
+// Ten are asked about, all but those of the face that was entered by. Let the line leave by one of the ten alone, and
+// each corner of that face be before the target. Then the walk from simplex to simplex leaves by this triangle, too
+// (tracking/batch/line_bounds.hpp). Simplices are not looked at. So the cell must be known to be positive.
 #pragma once
 
 #include <algorithm>

@@ -100,9 +100,9 @@ struct CellPlace {
   }
 };
 
-// The walks in the queue, which afterwards has those that must go on from simplex to simplex. In turns, each of three
-// passes: the far corners of all cells are found, and prefetched; eight walks at a time pass their cells, and their next
-// cells are prefetched; walks that end, or leave the cells, are looked at.
+// The walks in the queue, which afterwards has those that must go on from simplex to simplex. It works in turns of
+// three passes. The far corners of all cells are found, and prefetched. Eight walks at a time pass their cells, and
+// their next cells are prefetched. Walks that end, or leave the cells, are looked at.
 class CellLoop {
  public:
   CellLoop(Batch<false>& batch, CellWalkQueue& queue)
@@ -199,8 +199,8 @@ class CellLoop {
     return (walks.undecided | walks.near_end | out) & live;
   }
 
-  // Ends a walk at a wall, or leaves it to walks from simplex to simplex: in the cell that it has not passed, or in one
-  // beyond that is no hexahedron. Where its target is near, it passes no more cells.
+  // Ends a walk at a wall, or leaves it to walks from simplex to simplex. It is then in the cell that it has not
+  // passed, or in one beyond that is no hexahedron. If its target is near, it passes no more cells.
   void leave(std::uint32_t l) {
     const CellWalks8& walks = walks_[l / 8];
     const CellPlace& place = places_[l];

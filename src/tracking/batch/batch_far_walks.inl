@@ -50,9 +50,9 @@ struct LineLanes {
   }
 };
 
-// The walks that `kind` begins. In turns, each of three passes: the new corners of all walks are found, and prefetched;
-// four walks at a time pass their simplices, and their next cells are prefetched; walks that may have ended, or that
-// `kind` asks for, are looked at.
+// The walks that `kind` begins. They go in turns of three passes. The new corners of all walks are found, and
+// prefetched. Four walks at a time pass their simplices, and their next cells are prefetched. Walks that may have
+// ended, or that `kind` asks for, are looked at.
 template <bool moved, class Kind>
 class LineLoop {
  public:

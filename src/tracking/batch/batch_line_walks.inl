@@ -3,7 +3,7 @@
 //
 // Each corner is projected along the line once (tracking/batch/line_bounds.hpp). The triangle that a walk enters a
 // simplex by turns around the line. The simplex brings one more corner. Its sides towards the three others say by which
-// facet the line leaves: it replaces the corner opposite to that facet, and the next triangle turns around the line
+// facet the line leaves. It replaces the corner opposite to that facet, and the next triangle turns around the line
 // again. No determinant of the target is needed before the end is near.
 #pragma once
 
@@ -169,8 +169,8 @@ inline constexpr auto facets_entered = [] {
   return facets;
 }();
 
-// Corner j of a simplex that is entered by `facet` gives way to the new one: by which facet the walk leaves, and how the
-// turn of that facet's corners, as exit_corners() has them, differs.
+// A simplex is entered by `facet`, and its corner j gives way to the new one. This is the facet by which the walk
+// leaves, and how far that facet's corners are turned against those of exit_corners().
 struct LineTurn {
   std::uint8_t facet;
   std::uint8_t turn;

@@ -1,5 +1,5 @@
-// Far walks that go apart from the others, where vertices move: the step has several slices, or the filter does not prove
-// where the mesh carries the start, as at walls. Here they are found, and their starts. They walk in
+// Far walks that go apart from the others, if vertices move. Their step has several slices, or the filter does not
+// prove where the mesh carries the start, as at walls. Here they and their starts are found. They walk in
 // batch_slice_walks.inl. Part of the batch's kernel (tracking/batch/batch_kernel.inl).
 #pragma once
 
@@ -57,8 +57,8 @@ class Splitting {
   Splitting(Batch<true>& batch, const StepOptions& options, BatchList<SliceWalk>& apart)
       : b(batch), options_(options), apart_(apart) {}
 
-  // Takes those steps in the mask `which` that are held, or that are split, out of the block that begins with number
-  // `first`: they walk apart, or are deferred. Returns a mask of them. The others have one slice.
+  // Takes the steps that are held, or split, and in the mask `which` out of the block that begins with number `first`.
+  // They walk apart, or are deferred. Returns a mask of them. The others have one slice.
   std::uint32_t split(std::uint32_t first, std::uint32_t which) {
     for (std::uint32_t left = which; left != 0; left &= left - 1)
       prefetch_corners(b.before, b.vertices[first + static_cast<std::uint32_t>(std::countr_zero(left))]);
@@ -75,8 +75,8 @@ class Splitting {
     return taken_out;
   }
 
-  // Adds a far walk of one particle. Returns false where the target is near, where the particle's coordinates are not
-  // known, where its simplex is not proved to be positive, or where the particle is rounded out of it.
+  // Adds a far walk of one particle. Returns false if the target is near, or the particle's coordinates are not known.
+  // It does so, too, if its simplex is not proved to be positive, or the particle is rounded out of it.
   [[gnu::noinline]] bool add(std::uint32_t i, unsigned slices) {
     const Space<Between> space{&b.map, {b.before, b.now, 1.0 / slices}, b.simplex_count};
     const SimplexId at = b.states[i].at();

@@ -86,9 +86,9 @@ class BatchStepper {
   BatchStepper(const CellComplex& complex, bool moved, Threads threads, const StepOptions& options,
                const RoundCallback& respond);
 
-  /// Advances each particle to its target. Throws InvalidArgument where the numbers differ, or a target is not finite,
-  /// out of the exact range or not in the plane; throws what a response throws. Nothing is changed then. Cost: some
-  /// 20 ns a particle, and 1 us for each that meets a wall; and a few us for each round.
+  /// Advances each particle to its target. Throws InvalidArgument if the numbers differ, or a target is not finite, out
+  /// of the exact range or not in the plane. Throws what a response throws. Nothing is changed then. Cost: some 20 ns a
+  /// particle, and 1 us for each that meets a wall; and a few us for each round.
   StepReport advance(const BatchParticles& particles, std::span<const Vec3> targets) const;
 
   /// The same in a part of an environment, in space: steps go on where their cells are. Particles in `gone` are now on

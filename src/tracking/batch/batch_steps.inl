@@ -1,5 +1,5 @@
-// The record that all stages of a batch share: its scene, its steps, and how steps end; and the lists of walks that one
-// stage leaves to another. Part of the batch's kernel (tracking/batch/batch_kernel.inl).
+// The record that all stages of a batch share: its scene, its steps, and how steps end. It has the lists of walks that
+// one stage leaves to another. Part of the batch's kernel (tracking/batch/batch_kernel.inl).
 #pragma once
 
 #include <array>

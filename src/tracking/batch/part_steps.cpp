@@ -1,9 +1,9 @@
-// Steps in a part of an environment: the batch takes those that it can, TravellingStepper the others, and steps that need
+// Steps in a part of an environment. The batch takes those that it can, TravellingStepper the others. Steps that need
 // another rank's cells go there.
 //
 // The phases, in order:
 // 1. The chunks of the batch. It passes ghosts like any cells. A step that it has ended on a facet in a ghost is taken
-//    back, because walls around the ghost may be unknown here; the same holds for a walk to a wall of a ghost.
+//    back, because walls around the ghost may be unknown here. The same holds for a walk to a wall of a ghost.
 // 2. Until no rank has a step under way: answer contacts round by round; send the steps that leave; go on with those that
 //    come.
 // 3. Send particles that have ended in ghosts to their ranks.

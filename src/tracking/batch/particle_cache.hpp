@@ -14,7 +14,7 @@
 
 namespace dartcast::detail {
 
-/// The numbers of the vertices of the simplex that a particle is in: a step that ends in the same simplex need not look
+/// The numbers of the vertices of the simplex that a particle is in. A step that ends in the same simplex need not look
 /// them up.
 using VertexNumbers = std::array<std::uint32_t, 4>;
 

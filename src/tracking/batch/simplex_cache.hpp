@@ -12,11 +12,11 @@ namespace dartcast::detail {
 
 /// The cache of one particle's simplex. One value of each array per corner of the simplex. There are two kinds.
 ///
-/// Previous geometry, where vertices move: the corners as they were at the last step. Their positions are long out of
-/// the processor's caches when the next step asks for them. (x, y, z): relative to the particle, rounded to floats. w:
-/// the determinants of the particle; unknown where they do not prove its coordinates.
+/// Previous geometry, if vertices move: the corners as they were at the last step. Their positions are long out of the
+/// processor's caches when the next step asks for them. Here (x, y, z) are relative to the particle, rounded to floats.
+/// The determinants of the particle are w, unknown if they do not prove its coordinates.
 ///
-/// Barycentric coordinates, where vertices stand still: coordinate i of any point q is x q.x + y q.y + z q.z + w, to
+/// Barycentric coordinates, if vertices stand still. Coordinate i of any point q is x q.x + y q.y + z q.z + w, to
 /// within the margin of tracking/batch/coordinate_bounds.hpp. A step that ends in the same simplex reads nothing of the
 /// scene. They are unknown until a step has ended in the simplex. On lattices they may be exact: see CacheFlags.
 struct SimplexCacheEntry {

@@ -13,8 +13,8 @@
 
 namespace dartcast {
 
-/// A state whose cells have their handles in the whole environment, and the same with those of a part; cells that the
-/// part does not have are invalid then.
+/// A state whose cells have their handles in the whole environment, and the same with those of a part. There, cells
+/// that the part does not have are invalid.
 ParticleState whole_state(const PartCells& cells, ParticleState state);
 ParticleState state_here(const PartCells& cells, ParticleState state);
 

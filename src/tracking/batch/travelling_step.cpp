@@ -1,8 +1,8 @@
 // Steps that leave a part of an environment, and that come to it. The driver decides where a step leaves, and writes down
 // all that it needs to go on.
 //
-// The phases of a walk here: go to the wall or to the target's simplex; if that is another rank's, and its surroundings
-// matter, leave; else end the walk as tracking/walk.hpp does.
+// The phases of a walk here: Go to the wall or to the target's simplex. If that is another rank's, and its surroundings
+// matter, leave. Otherwise end the walk as tracking/walk.hpp does.
 #include "tracking/batch/travelling_step.hpp"
 
 #include "tracking/step_run.hpp"

@@ -7,12 +7,12 @@
 namespace dartcast {
 
 /// Takes steps in space as Stepper does, to the same bits, as far as a rank's own cells decide them. A walk may pass
-/// ghosts; it leaves where it ends in one at a wall or on its border, for the rank that knows all cells around. The rules:
+/// ghosts. If it ends in one at a wall or on its border, it leaves for the rank that knows all cells around. The rules:
 ///  - walks, carries and contacts start in own cells;
 ///  - a walk that ends strictly inside a ghost is complete, because no other cell has a say;
 ///  - a particle that is in a ghost at the end of its step belongs to the ghost's rank.
 ///
-/// The stage of the traveller's step says how far it has come: it waits at a contact, the last of the list; it is done;
+/// The stage of the traveller's step says how far it has come. It waits at a contact, the last of the list; it is done;
 /// or it leaves, and `to` is set.
 class TravellingStepper {
  public:
