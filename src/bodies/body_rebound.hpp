@@ -19,9 +19,9 @@ class BodyRebounds {
  public:
   /// Finds the pairs that come together within a step, faster than `resting_speed`, and gives the bodies that they
   /// join the impulses of an impact. `pairs`: as found by BodyCollisions. `movers`: the bodies with their velocities;
-  /// out: those after the impact. Returns the number of such pairs. Momentum and angular momentum change because of rounding
-  /// alone, and the kinetic energy of joined bodies grows because of rounding alone, however far the solver came. Reason: the
-  /// energy is a quadratic function of the share of the impulses that is given. It is least at some share, and the
+  /// out: those after the impact. Returns the number of such pairs. Rounding alone changes momentum and angular
+  /// momentum, and rounding alone lets the kinetic energy of joined bodies grow, however far the solver came. Reason:
+  /// the energy is a quadratic function of the share of the impulses that is given. It is least at some share, and the
   /// share given is at most twice that. Preconditions: options are in range, restitution is set, pairs are sorted and
   /// their ids ascend.
   std::uint64_t solve(const BodyParticles& particles, std::span<const SpherePair> pairs,

@@ -95,8 +95,8 @@ std::optional<std::array<double, 4>> orthonormalized(Columns& q) {
   return z;
 }
 
-// Affine weights of x over some samples: sum w = 1 and sum w p = x, with the least sum of (w / theta)^2 for a bell
-// theta around x. Empty if the samples lie in a plane.
+// Affine weights of x over some samples: sum w = 1 and sum w p = x. The sum of (w / theta)^2 is the least possible, for
+// a bell theta around x. Empty if the samples lie in a plane.
 std::vector<double> affine_weights(const Vec3& x, std::span<const Vec3> samples, std::span<const std::uint32_t> near) {
   double far = 0.0;
   for (const std::uint32_t i : near) far = std::max(far, norm(samples[i] - x));

@@ -69,8 +69,8 @@ struct Adjugate {
   }
 };
 
-// Newton's method for the maximum of trace(R^T A) over rotations R exp(w): with M = R^T A the first derivative is the
-// axial vector of M, the second -(trace(M) 1 - sym(M)). If the second is negative definite the maximum is unique.
+// Newton's method for the maximum of trace(R^T A) over rotations R exp(w). Let M = R^T A. The first derivative is the
+// axial vector of M, the second is -(trace(M) 1 - sym(M)). If the second is negative definite the maximum is unique.
 // Its eigenvalues are sums of two singular values, the least one with the sign of det A.
 std::optional<Quaternion> newton(const Mat3& a, Quaternion q, double norm) {
   for (int i = 0; i < rotation_iterations; ++i) {

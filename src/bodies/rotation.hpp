@@ -9,9 +9,9 @@
 
 namespace dartcast {
 
-/// A rotation R is taken as the nearest one to A if R^T A is symmetric up to this share of A's Frobenius norm:
-/// |axial(R^T A)| <= rotation_residual |A|. The product's entries are rounded by at most 5 u |A| each (u = 2^-53; R is
-/// orthonormal up to 6 u), a component of the axial vector, a difference of two, by less than 16 u |A|.
+/// A rotation R is taken as the nearest one to A if R^T A is symmetric up to this share of A's Frobenius norm. This
+/// means |axial(R^T A)| <= rotation_residual |A|. The product's entries are rounded by at most 5 u |A| each (u = 2^-53;
+/// R is orthonormal up to 6 u). A component of the axial vector is a difference of two, off by less than 16 u |A|.
 inline constexpr double rotation_residual = 0x1p-48;
 
 /// Iterations before the fallback. From a start within 60 degrees four suffice; from one step to the next one or two.

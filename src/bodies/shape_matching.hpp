@@ -21,8 +21,8 @@ namespace dartcast {
 class RestShape {
  public:
   /// `masses`: one per point. Throws InvalidArgument if there is no point, a mass is out of range (is_mass()), a
-  /// point is not finite, linear is outside [0, 1], a cluster is empty, names a missing point or one twice, or a
-  /// point is in no cluster.
+  /// point is not finite, or linear is outside [0, 1]. Throws it, too, if a cluster is empty, or names a missing point
+  /// or one twice, or if a point is in no cluster.
   RestShape(std::span<const Vec3> points, std::span<const double> masses, const MatchOptions& options = {});
 
   [[nodiscard]] std::size_t size() const { return masses_.size(); }

@@ -12,7 +12,7 @@ namespace dartcast {
 namespace {
 
 // Lengths and walls are so many times as stiff as all else at a point. Their remaining errors are then a thousandth
-// of those that bending alone would cause, and the system is well conditioned for any bending up to 10^8.
+// of those that bending alone would cause. The system is well conditioned for any bending up to 10^8.
 double hardness(const ChainWeights& weights) { return 1e3 * (1.0 + 16.0 * weights.bending); }
 
 // Shares of the spacing. Below the first share friction grows with the motion, so that a point at rest has a

@@ -22,9 +22,9 @@ inline Vec3 any_normal(const Vec3& t) {
   return unit_or(cross(t, axis), {1, 0, 0});
 }
 
-/// A normal of the unit tangent a, taken to b by the smallest rotation that takes a to b (R. L. Bishop, "There is more
-/// than one way to frame a curve", 1975), by two reflections (W. Wang, B. Juettler, D. Zheng, Y. Liu, "Computation of
-/// rotation minimizing frames", 2008): a unit vector perpendicular to b. If b is -a it stays as it is.
+/// A normal of the unit tangent a, turned with the smallest rotation that takes a to b (R. L. Bishop, "There is more
+/// than one way to frame a curve", 1975). Made of two reflections (W. Wang, B. Juettler, D. Zheng, Y. Liu, "Computation
+/// of rotation minimizing frames", 2008). A unit normal of b; if b is -a, it is unchanged.
 inline Vec3 transported(const Vec3& normal, const Vec3& a, const Vec3& b) {
   const Vec3 sum = a + b;
   const double length = dot(sum, sum);

@@ -35,8 +35,8 @@ inline double near_room(const SphereMotion& s) {
 inline bool in_reach(double gap, const Vec3& a, const Vec3& b, double dt) { return gap <= (norm(a) + norm(b)) * dt; }
 
 /// Removes the walls of lone spheres, which meet them by their own step, at the time of the contact. A sphere is lone
-/// if `shared` is 0 (no other is in_reach()), if it comes to no wall at the resting speed or slower, and if it
-/// comes to a wall faster or leaves one. `shared`: by sphere; changed. Gaps are without the resting gaps.
+/// if `shared` is 0 (no other is in_reach()), and if it comes to no wall at the resting speed or slower. It must also
+/// come to a wall faster, or leave one. `shared`: by sphere; changed. Gaps are without the resting gaps.
 void leave_lone_spheres(std::span<const Vec3> velocities, const SolverOptions& options,
                         std::vector<std::uint8_t>& shared, std::vector<WallContact>& walls);
 

@@ -57,9 +57,9 @@ struct SolverOptions {
 };
 
 /// A rebound at a contact whose two sides have no other, at its time within the step. If one side does not move, the
-/// speed of the other is that which keeps the energy of this moment, as for a particle at a wall (docs/method.md,
-/// "Reflection"). `bound`: the velocity along the normal, from a to b, that just comes to the contact in the step, <= 0.
-/// `impulse`: on b; the velocities hold it already. Returns the displacements of a and b.
+/// speed of the other keeps the energy of this moment, as for a particle at a wall (docs/method.md, "Reflection").
+/// `bound`: the velocity along the normal, from a to b, that just comes to the contact in the step, <= 0. `impulse`: on
+/// b; the velocities hold it already. Returns the displacements of a and b.
 std::array<Vec3, 2> rebound_alone(const Vec3& normal, double bound, const Vec3& impulse, detail::ContactBody& a,
                                   detail::ContactBody& b, const SolverOptions& options);
 
@@ -76,15 +76,15 @@ struct SolverSpheres {
 
 class ContactSolver {
  public:
-  /// Each impulse is applied to both spheres, equal and opposite: momentum changes because of rounding alone. Taking out
-  /// penetration changes displacements, never velocities. A contact with approach speed u above the resting speed ends
-  /// with restitution u along its normal if it was given an impulse (rebounds are solved once more over all contacts;
-  /// rebound_alone() if it is the only one of its sides).
-  /// The result depends on the contacts and ids, not on the order of spheres or contacts. Throws InvalidArgument if
+  /// Each impulse is applied to both spheres, equal and opposite: momentum changes because of rounding alone.
+  /// Taking out penetration changes displacements, never velocities. If a contact with approach speed u above
+  /// the resting speed was given an impulse, it ends with restitution u along its normal. Rebounds are solved
+  /// once more over all contacts, or by rebound_alone() for a contact that is the only one of its sides. The
+  /// result depends on the contacts and ids, not on the order of spheres or contacts. Throws InvalidArgument if
   /// an option is out of range, spans differ in length, or a contact names no sphere; nothing changed. It
   /// depends on the regions, too, but not on the number of threads. Cost: linear in the contacts times the
-  /// iterations, after sorting. Four contacts at once: some 10 ns a contact and iteration on one thread, the sorting
-  /// included.
+  /// iterations, after sorting. Four contacts at once: some 10 ns a contact and iteration on one thread, the
+  /// sorting included.
   void solve(std::span<const PairContact> pairs, std::span<const WallContact> walls, const SolverSpheres& spheres,
              const SolverOptions& options, Threads threads = {1});
 

@@ -33,9 +33,9 @@ std::array<Vertex, 3> key_of(const NearWall& w, const NearestOnTriangle& nearest
   return key;
 }
 
-// Whether the way from `point`, a place of these vertices, to another corner of a wall that has them all leads nearer to
-// the centre, by more than rounding. Where it does not by itself, the same place of another wall is beside it, no farther
-// away than `same_place`.
+// Whether a wall that has all these vertices has another corner towards which the way leads nearer to the centre, by
+// more than rounding. The way starts at `point`, a place of these vertices. If it leads nearer by less, the same place
+// of another wall is beside it, no farther away than `same_place`.
 bool goes_nearer(const NearWall& w, const std::array<Vertex, 3>& key, const Vec3& point, const Vec3& centre,
                  double same_place) {
   const auto is_in = [](Vertex v, const std::array<Vertex, 3>& list) {
@@ -114,8 +114,8 @@ struct NearWalls::Reach {
     box.widen(radius);
     is_long = true;
   }
-  // A point's tube is around its way. An edge's is around the edge at the time 1/2: no point of the edge is ever farther
-  // from where it is then than half the largest displacement of the ends. A triangle has none.
+  // A point's tube is around its way. An edge's is around the edge at the time 1/2. No point of the edge is ever
+  // farther from its place then than half the largest displacement of the ends. A triangle has none.
   Reach(const MovingElement& e, double margin) : box{e.from[0], e.from[0]} {
     double farthest = 0.0;
     for (unsigned i = 0; i < e.count; ++i) {

@@ -1,5 +1,5 @@
 // The walls near a sphere, or near a point, an edge or a triangle that moves. The search starts in the cell of the
-// centre, or of the first corner, and goes through the faces that the sphere or the element reaches.
+// centre, or of the first corner. It goes through the faces that the sphere or the element reaches.
 //
 // It never searches the whole scene, and never looks through a wall. It always finds the wall that is touched first.
 // For a sphere: the straight way from the centre to the point of contact crosses free cells alone, through faces that
@@ -122,11 +122,11 @@ class NearWalls {
   /// next search or call of this.
   std::span<const NearestOnTriangle> nearest(const Vec3& centre);
 
-  /// The places on walls that are no farther from `centre` than `reach`, as the walls stand now, and nearer than all of
-  /// the wall around them. So a vertex or an edge of a wall that is nearer elsewhere does not count. Each is there once,
-  /// however many triangles share it. Sorted by distance, equal ones in the order of the search. `displacement`
-  /// is that of the last move if `moved` is set, else 0. Valid until the next search. Cost: that of the search,
-  /// and 0.1 us a triangle.
+  /// The places on walls, as these stand now. Each is at most `reach` from `centre`, and nearer to it than all of the
+  /// wall around the place. So a vertex or an edge of a wall that is nearer elsewhere does not count. Each is there
+  /// once, however many triangles share it. Sorted by distance, equal ones in the order of the search. `displacement`
+  /// is that of the last move if `moved` is set, else 0. Valid until the next search. Cost: that of the search, and 0.1
+  /// us a triangle.
   std::span<const WallFeature> within(const CellComplex& complex, Cell cell, const Vec3& centre, double reach,
                                       bool moved);
 

@@ -14,8 +14,8 @@ constexpr std::uint32_t nothing = 0xffffffffU;
 
 Vec3 middle_of(const SweptBox& b) { return (b.low + b.high) * 0.5; }
 
-// Cells are longer than the boxes in them by this share of themselves at least: more than all rounding below, as
-// coordinates are at most 2^30 cells (min_level()).
+// Cells are longer than the boxes in them by this share of themselves at least. This is more than all rounding below,
+// because coordinates are at most 2^30 cells (min_level()).
 constexpr double spare = 0x1p-16;
 
 int level_of(const SweptBox& b) {

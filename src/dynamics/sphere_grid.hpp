@@ -1,8 +1,8 @@
 // A grid of several levels for boxes of very different sizes.
 //
-// A box is in the one cell that holds its middle, in the level whose cells are the next power of two above its
-// longest edge. Its neighbours of that level are in 27 cells, those of each coarser level in at most 27. M. Mueller
-// and others call it a hierarchical grid: B. Mirtich, "Efficient algorithms for two-phase collision detection", 1997.
+// A box is in the cell that holds its middle, in the level whose cells are the next power of two above its longest
+// edge. Its neighbours of that level are in 27 cells, those of each coarser level in at most 27. M. Mueller and others
+// call it a hierarchical grid: B. Mirtich, "Efficient algorithms for two-phase collision detection", 1997.
 #pragma once
 
 #include <algorithm>

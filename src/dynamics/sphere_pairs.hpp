@@ -35,10 +35,10 @@ class PairFinder {
  public:
   /// The pairs whose swept boxes (centre, motion and radius) overlap or touch, sorted. Spheres of radius 0 meet no
   /// other. The search through cells starts in the cells of the centres and passes free cells alone. So it leaves out
-  /// pairs that no way within the box of both connects, as on two sides of a blocked layer. separated() decides
-  /// whether a wall is between the others. `states`, `spheres`: by particle; `lists` up to date with the states. The
-  /// result holds until the next call. It is the same for any number of threads. Throws InvalidArgument if a
-  /// sphere's box is not finite or reaches beyond 2^1000.
+  /// pairs that no way within the box of both connects, as on two sides of a blocked layer. For the others, separated()
+  /// decides whether a wall is between them. `states`, `spheres`: by particle; `lists` up to date with the states. The
+  /// result holds until the next call. It is the same for any number of threads. Throws InvalidArgument if a sphere's
+  /// box is not finite or reaches beyond 2^1000.
   std::span<const SpherePair> find(const CellComplex& complex, const CellLists& lists,
                                    std::span<const ParticleState> states, std::span<const SphereMotion> spheres,
                                    Threads threads = {}, PairSearch search = PairSearch::automatic);

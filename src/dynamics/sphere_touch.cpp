@@ -13,7 +13,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// The second sphere as seen from the first: a point that meets a ball of the sum of the radii, when
+// The second sphere as seen from the first. It is a point, and meets a ball of the sum of the radii when
 // a t^2 + 2 b t + c <= 0. Lengths are scaled by a power of two, so that nothing overflows.
 struct Relative {
   Vec3 place;

@@ -21,9 +21,9 @@ struct Approach {
 };
 
 /// The half-space of motions that keep the spheres apart: their relative displacement along the normal is not below
-/// -gap. It is tangent to the forbidden ball where the straight motion touches it, so that a motion that touches
-/// nothing satisfies it, however near it passes. Plain rounded arithmetic: normals and gaps are right to a few units
-/// in the last place of the positions. Cost: some 20 ns.
+/// -gap. It is tangent to the forbidden ball at the point that the straight motion touches. So a motion that touches
+/// nothing satisfies it, however near it passes. Plain rounded arithmetic: normals and gaps are right to a few units in
+/// the last place of the positions. Cost: some 20 ns.
 Approach approach(const SphereMotion& a, const SphereMotion& b);
 
 }  // namespace dartcast

@@ -22,8 +22,8 @@ constexpr unsigned max_divisions = 4096;
 constexpr std::size_t max_open = 64;  // intervals that wait
 
 // The error of each computed number is at most this share of M, the largest length. A difference to the centre is off
-// by e = 2^-53 of itself. A corner at a time t is off by 4 e M along each axis, and so by 7 e M in a product with a
-// unit vector. The product's own rounding adds 3 e M, the mean of two e M, the vector's length 4 e r. The sum is less
+// by e = 2^-53 of itself. A corner at a time t is off by 4 e M along each axis. So it is off by 7 e M in a product with
+// a unit vector. The product's own rounding adds 3 e M, the mean of two e M, the vector's length 4 e r. The sum is less
 // than 16 e M for a coefficient. A distance: 7 e M from the corners, 9 e M from their weights and the sum, 3 e M from
 // its length. (In double-double, the same with DoubleDouble::rounding.) The rest covers M's own rounding, and
 // coordinates that scaling takes below the smallest double.

@@ -66,8 +66,8 @@ inline constexpr double grazing_bound = 0x1p-60;
 /// the touch is reported where the proof ended: early, never late.
 ///
 /// Preconditions: radius > 0, slack >= 0, until in [0, 1], all finite and below 2^300 in magnitude. Cost: 0.25 us if
-/// one direction keeps them apart, 2 to 3 us for a touch, tens of us if it is grazing, or if the sphere starts on
-/// the triangle with a slack below 2^-47 M.
+/// one direction keeps them apart, 2 to 3 us for a touch. It is tens of us if the touch is grazing, or if the sphere
+/// starts on the triangle with a slack below 2^-47 M.
 std::optional<SphereTouch> first_touch(const MovingSphere& sphere, const MovingTriangle& triangle, double slack = 0.0,
                                        double until = 1.0);
 

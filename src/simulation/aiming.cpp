@@ -195,8 +195,8 @@ void Aiming::diffuse(const Segment& segment, std::span<const std::uint64_t> ids)
   });
 }
 
-// Most particles of a flow are aimed four at a time, and most of those without one in a short loop; the others one by
-// one.
+// Most particles of a flow are aimed four at a time, and most of those without one in a short loop. The others are
+// aimed one by one.
 void Aiming::aim_at_field(const Segment& segment) {
   const bool in_fours = field_ && !force_ && field_->place() == FieldPlace::points;
   const bool flies = !field_ && !force_;

@@ -1,8 +1,8 @@
 // Moves cells between ranks.
 //
-// Phases: compare the ranks' loads; divide the cells anew; compare the loads that this gives; move the cells, build the
-// environment of the new part at rest, and give it all that belongs to its points; move the particles, as a checkpoint and
-// a resume on another number of ranks would.
+// Phases: Compare the ranks' loads. Divide the cells anew. Compare the loads that this gives. Move the cells, build the
+// environment of the new part at rest, and give it all that belongs to its points. Move the particles, as a checkpoint
+// and a resume on another number of ranks would.
 #include "simulation/balance.hpp"
 
 #include <algorithm>

@@ -68,9 +68,10 @@ Eddies::Eddy Eddies::eddy_at(std::span<const double> numbers, const Crossing& cr
 
 namespace {
 
-// Eddies are held for whole steps, n or n + 1 of them if the life is between. The dispersion of a long time is that of the life
-// if the variance of the velocity has this factor: the life times the mean of the number of steps, by that of its square.
-// Below one step the velocity is the mean of those of several eddies. For many steps the factor is 1.
+// Eddies are held for whole steps, n or n + 1 of them if the life is between. The dispersion of a long time is that of
+// the life if the variance of the velocity has this factor. It is the life times the mean of the number of steps,
+// divided by the mean of its square. Below one step the velocity is the mean of those of several eddies. For many steps
+// the factor is 1.
 double share_of_variance(double life, double duration) {
   const double steps = std::max(1.0, life / duration);
   if (steps > 0x1p+20) return 1.0;

@@ -28,7 +28,7 @@ class EventScheduler {
   /// After each step: remeshes and subdivides if that is due, and counts.
   void after_step(Simulation& simulation);
   /// Does again those changes of the log that have not been made yet. Throws InvalidArgument if other changes have
-  /// been made, if the log names an unknown event, or if there are particles and something is to be done.
+  /// been made, the log names an unknown event, or there are particles and something is to be done.
   void replay(Simulation& simulation, const EventLog& log);
   /// Goes on from a log that has been replayed.
   void set_log(const EventLog& log) { log_ = log; }

@@ -36,9 +36,9 @@ struct FlowParticles {
   std::span<std::uint8_t> aimed;
 };
 
-/// Gives particles new velocities and targets, as Aiming does one by one, with the same bits in every
-/// instruction set. Bit k of aimed[i] is set if this was done for particle 4 i + k. It is left to the caller if
-/// the particle is held or not alive or its simplex is a sliver, and at the end, if fewer than four remain.
+/// Gives particles new velocities and targets, as Aiming does one by one, with the same bits in every instruction set.
+/// Bit k of aimed[i] is set if this was done for particle 4 i + k. It is left to the caller if the particle is held or
+/// not alive, or its simplex is a sliver. Fewer than four at the end are left to the caller, too.
 void aim_in_flow(const FlowScene& scene, const FlowParticles& particles, InstructionSet set = best_instruction_set());
 
 namespace portable {

@@ -62,8 +62,8 @@ struct ForceTerms {
   bool brownian = false;
 };
 
-/// Samples a field at points. Bit k of sampled[i] is set if this was done for particle 4 i + k: it is left to the caller if
-/// the simplex is a sliver. `sampled`: a byte for each four particles, and for those that remain.
+/// Samples a field at points. Bit k of sampled[i] is set if this was done for particle 4 i + k. It is left to the
+/// caller if the simplex is a sliver. `sampled`: a byte for each four particles, and for those that remain.
 void sample_field(const FieldAtPoints& field, const StageParticles& particles, const SamplesOfField& samples,
                   std::span<std::uint8_t> sampled, InstructionSet set = best_instruction_set());
 

@@ -228,8 +228,8 @@ class ForceKernel {
   const LawResult& result_;
 };
 
-// The shares of an acceleration that count in a time with z = c t: phi = (1 - e^-z) / z for the velocity, and psi =
-// (z - 1 + e^-z) / z^2 for the way. Where differences would cancel, psi is its series.
+// The shares of an acceleration in a time with z = c t. For the velocity it is phi = (1 - e^-z) / z, and for the way
+// psi = (z - 1 + e^-z) / z^2. If differences would cancel, psi is its series.
 struct Shares4 {
   Double4 phi, psi;
 };
@@ -285,9 +285,9 @@ class HeldKernel {
   double time_;
 };
 
-// With z = c t, the velocity has the variance s z phi (2 - z phi) with s = k T / m. Given the velocity's change dv, the way
-// has the mean t w dv with w = phi / (2 - z phi), and the variance 2 s t^2 (1 - 2 w) / z. Where 1 - 2 w would cancel, it is
-// z^2 / (2 - z phi) times the series of 1/6 - 2 z / 24 + 3 z^2 / 120 ...
+// With z = c t, the velocity has the variance s z phi (2 - z phi) with s = k T / m. Given the velocity's change dv, the
+// way has the mean t w dv with w = phi / (2 - z phi). Its variance is 2 s t^2 (1 - 2 w) / z. If 1 - 2 w would cancel,
+// it is z^2 / (2 - z phi) times the series of 1/6 - 2 z / 24 + 3 z^2 / 120 ...
 constexpr auto rest_terms = [] {
   std::array<double, exponential_terms.size() - 1> terms{};
   for (std::size_t k = 0; k < terms.size(); ++k) terms[k] = static_cast<double>(k + 1) * exponential_terms[k + 1];

@@ -1,7 +1,7 @@
 // Two stages of a segment under forces.
 //
-// Phases: sample the fluid at the particles; forces, then the user's law; move to the middle; continue the samples to
-// there; forces and law again; move over the whole segment with what these gave. Without a law all of this is done for a
+// Phases: Sample the fluid at the particles. Compute forces, then the user's law. Move to the middle. Continue the
+// samples to there. Compute both again. Move over the whole segment with these. Without a law all of this is done for a
 // block of particles, then for the next.
 #include "simulation/force_step.hpp"
 

@@ -22,9 +22,9 @@ void check_forces(const SimulationOptions& options, bool planar);
 /// Empty, or what is wrong with a particle's material for these forces, behind "a particle's".
 [[nodiscard]] std::string wrong_material(const Material& material, const ForceOptions& forces);
 
-/// Its scheme is the exponential midpoint rule. Coefficients and field at the start predict the middle of the segment; those
-/// at the middle are then held over the whole. The field at the middle is that of the particle's simplex, which its gradient
-/// continues, but it changes by no more than it does within the simplex.
+/// Its scheme is the exponential midpoint rule. Coefficients and field at the start predict the middle of the segment;
+/// those at the middle are then held over the whole. The field at the middle is that of the particle's simplex,
+/// continued with its gradient. It changes by no more than it does within the simplex.
 class ForceStep {
  public:
   /// All outlive it.

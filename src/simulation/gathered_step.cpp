@@ -1,6 +1,6 @@
 // Sends what happened in a step to the first rank, which puts it in the order of one process: by id.
 //
-// Phases: counts are summed, and entries of lists counted. If there are any, each rank packs its own; the first unpacks
+// Phases: counts are summed, and entries of lists counted. If there are any, each rank packs its own. The first unpacks
 // all and merges them, contacts with their walls first, because particles that left name their last contact.
 #include "simulation/gathered_step.hpp"
 

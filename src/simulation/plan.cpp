@@ -1,7 +1,7 @@
 // Plans a run on many ranks.
 //
-// Phases: divide the mesh and count around every point which parts meet there; build sample parts, and measure a step in
-// them; from both the work of the largest rank, and from a model of the network the time of its messages.
+// Phases: Divide the mesh, and count the parts that meet at every point. Build sample parts, and measure a step in
+// them. Both give the work of the largest rank; a model of the network gives the time of its messages.
 #include "dartcast/plan.hpp"
 
 #include <fmt/format.h>

@@ -54,8 +54,8 @@ struct RigidWay {
   }
 };
 
-/// How many equal slices a way needs, so that chords are at most `distance` off it at any time, for all points within `arm`
-/// of the axis. Preconditions: angle, arm, distance >= 0, and distance > 0 if arm is.
+/// How many equal slices a way needs. With them chords are at most `distance` off it at any time, for all points within
+/// `arm` of the axis. Preconditions: angle, arm, distance >= 0, and distance > 0 if arm is.
 ///
 /// In a slice of angle a the acceleration of such a point is at most a^2 arm, if the slice takes the time 1. So a chord,
 /// which interpolates the way, is off by at most a^2 arm / 8.

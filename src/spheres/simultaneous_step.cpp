@@ -16,8 +16,8 @@ namespace dartcast {
 
 namespace {
 
-// Where a point goes on along a wall, it ends this share of the wall's longest side off it: rounding then does not put
-// it onto the wall.
+// If a point goes on along a wall, it ends this share of the wall's longest side off it. So rounding does not put it
+// onto the wall.
 constexpr double rest_gap = 0x1p-20;
 // Shares of the way to a touch that are left out. A rounded place on the way is the nearer to the wall, the likelier it is
 // not proved free.

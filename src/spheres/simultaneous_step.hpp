@@ -7,9 +7,9 @@
 //  2. no touch        the point ends at its target, in the simplex among the cells reached that holds it
 //  3. stop_before()   else the point goes on to just before the first touch, once this rounded way is proved free
 //  4. describe()      the contact; the response gives the next leg
-// A leg cannot be decided so where a cell in reach becomes flat, where the point is on a wall already, and after the last
+// A leg cannot be decided so if a cell in reach becomes flat, if the point is on a wall already, and after the last
 // contact allowed. The vertices then carry the point for the rest of the step: StepStage::carry. A point on a wall that
-// goes towards it has a contact there first, and then a target off that wall: its next step has legs again.
+// goes towards it has a contact there first, and then a target off that wall. So its next step has legs again.
 #pragma once
 
 #include <cstdint>
