@@ -11,7 +11,7 @@ namespace dartcast::app {
 /// none. Throws CLI::ValidationError.
 std::uint64_t parse_memory(const std::string& text);
 
-/// Adds the option to a verb. `bytes` is as it was where the option is not given, and must outlive the verb.
+/// Adds the option to a verb. `bytes` is as it was if the option is not given, and must outlive the verb.
 void add_max_memory(CLI::App& verb, std::uint64_t& bytes);
 
 }  // namespace dartcast::app

@@ -65,7 +65,7 @@ auto while_waiting(const std::string& what, bool shows, ReadOptions options, Mak
   return make(options);
 }
 
-/// The text of a line of progress, at most `width` characters, with a bar where there is room. `step` of `all` steps are
+/// The text of a line of progress, at most `width` characters, with a bar if there is room. `step` of `all` steps are
 /// done; `measured` of them took `seconds`.
 std::string progress_text(std::uint64_t step, std::uint64_t all, std::uint64_t measured, double seconds,
                           std::size_t width);

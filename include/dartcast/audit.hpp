@@ -13,7 +13,7 @@ namespace dartcast {
 
 class CellComplex;  // dartcast/cell_complex.hpp
 
-// The audit: whether every particle is where its state says, by slow exact arithmetic that shares no code with the
+// The audit: whether every particle is where its state says, with slow exact arithmetic that shares no code with the
 // walk.
 
 /// The outcome of an audit. Sums of audits are audits.

@@ -46,7 +46,7 @@ struct CatheterOptions {
 struct CatheterInput {
   double push = 0.0;  ///< m; negative: pulled
   double turn = 0.0;  ///< rad, about the direction of the entry, by the right hand; at most 2 pi in magnitude
-  Vec3 load = {};     ///< displacement by weight or flow, in one step, of a point that nothing holds, m
+  Vec3 load = {};     ///< displacement from weight or flow, in one step, of a point that nothing holds, m
 };
 
 /// Report of one step.
@@ -150,8 +150,8 @@ class Catheter {
   [[nodiscard]] Vec3 entry() const;
   [[nodiscard]] Vec3 direction() const;
 
-  /// Whether any segment meets a wall, in integers, by code that shares nothing with the steps. Without edges, or if the
-  /// catheter is stuck, nothing is checked. Cost: as SolidSet::audit().
+  /// Whether any segment meets a wall, in integers, with code that shares nothing with the steps. Without edges, or if
+  /// the catheter is stuck, nothing is checked. Cost: as SolidSet::audit().
   [[nodiscard]] SolidAudit audit() const;
   /// All points with the waiting ones, then the entry: for audits.
   [[nodiscard]] const Particles& particles() const;

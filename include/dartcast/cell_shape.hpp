@@ -247,7 +247,7 @@ class Shape {
   std::uint16_t point_count_ = 0;
   std::vector<std::uint16_t> origin_, face_of_, first_dart_, phi2_;
   std::vector<std::uint16_t> darts_at_, first_dart_at_;  // by corner: those with this origin
-  std::vector<std::uint64_t> points_of_face_;            // none where there are too many points
+  std::vector<std::uint64_t> points_of_face_;            // none if there are too many points
   std::vector<ImplicitSimplex> simplices_;
   // Owned; null until they are needed.
   mutable std::atomic<const Stars*> stars_ = nullptr;

@@ -87,9 +87,9 @@ class ComplexEdit {
   /// Places a vertex that this edit made. Throws InvalidArgument if this edit made no such vertex. It also throws if
   /// x is not finite, outside the exact range, or not in the plane of a planar map.
   void place(Vertex v, const Vec3& x);
-  /// Places it at the weighted mean of older vertices. Data at the vertices follow by the same weights. This is better
-  /// for a vertex in the middle of a face or a cell. `weights`: one per vertex of `of`; they sum to 1. Throws as above,
-  /// and if the numbers do not match.
+  /// Places it at the weighted mean of older vertices. Data at the vertices follow with the same weights. This is
+  /// better for a vertex in the middle of a face or a cell. `weights`: one per vertex of `of`; they sum to 1. Throws as
+  /// above, and if the numbers do not match.
   void place(Vertex v, std::span<const Vertex> of, std::span<const double> weights);
 
   [[nodiscard]] Transaction::Savepoint savepoint() const { return transaction_.savepoint(); }

@@ -49,10 +49,10 @@ struct Section {
   std::vector<Cell> whole;
 };
 
-/// Splits cells by a plane. The side of each vertex is decided once, so that all cells agree. The new vertex of an edge
-/// lies where the plane crosses it, rounded. Cells around that are not named take the new vertices and edges into their
-/// faces, and stay whole. Parts keep the free mark of the cell and the patches of its faces. The new faces have no
-/// patch.
+/// Splits cells with a plane. The side of each vertex is decided once, so that all cells agree. The new vertex of an
+/// edge lies where the plane crosses it, rounded. Cells around that are not named take the new vertices and edges into
+/// their faces, and stay whole. Parts keep the free mark of the cell and the patches of its faces. The new faces have
+/// no patch.
 ///
 /// A cell with bent faces may have no valid parts, or none at all. Then it is divided into its simplices first (see
 /// divide_into_simplices()), whether it is named or beside one that is. If vertices that snap to the plane still bend

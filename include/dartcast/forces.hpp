@@ -24,8 +24,8 @@ enum class Force : std::uint8_t {
   buoyancy,           ///< gravity counts times 1 - k
   pressure_gradient,  ///< k Du/Dt
   virtual_mass,       ///< k (Du/Dt - dv/dt) / 2: the left side gets the second part
-  saffman_mei,        ///< lift by shear: k C (u - v) x curl u, after R. Mei, 1992, up to and beyond Re 40
-  lorentz,            ///< q (E + v x B), by Boris' scheme
+  saffman_mei,        ///< lift from shear: k C (u - v) x curl u, after R. Mei, 1992, up to and beyond Re 40
+  lorentz,            ///< q (E + v x B), with Boris' scheme
   /// Random motion by the fluid's molecules; it needs a law of drag, and the fluid's temperature. Velocity and way are drawn
   /// together, by a law that is exact for any c dt. Random numbers depend on the seed, the particle's id and the step alone.
   brownian

@@ -247,7 +247,7 @@ struct SplitEdge {
 /// Puts a vertex on the edge of d, in all cells around the edge.
 SplitEdge split_edge(Transaction& t, Dart d);
 
-/// Splits a face, on both its sides, by an edge between the origins of two of its darts. Refused if they are
+/// Splits a face, on both its sides, with an edge between the origins of two of its darts. Refused if they are
 /// neighbours in the face, or if an edge of the cell joins them already. Returns the cell of a, then the cell beyond
 /// the face. In the plane: the part with a, then the part with b.
 std::vector<Cell> split_face(Transaction& t, Dart a, Dart b);
@@ -326,7 +326,7 @@ struct Violation {
 ///
 ///  - phi1 is a permutation with inverse phi_1;
 ///  - phi2 is an involution without fixed points that turns the edge around;
-///  - phi3 and phi1 o phi3 are involutions (where defined), and sewn darts have the same vertices;
+///  - phi3 and phi1 o phi3 are involutions (if defined), and sewn darts have the same vertices;
 ///  - both sides of a face are fanned from the same point, or from no Steiner point;
 ///  - a face starts at its lowest-numbered vertex;
 ///  - vertices are in range, and distinct in a cell;

@@ -128,7 +128,7 @@ struct ExpectedOutput {
   std::uint64_t frames = 0;  ///< from now on
   std::uint64_t bytes = 0;
 };
-/// Called once, before the first step; where ranks share the run, by the first alone.
+/// Called once, before the first step; if ranks share the run, by the first alone.
 using Announce = std::function<void(const ExpectedOutput&)>;
 
 /// Runs a scene, and reads the files that it names. Throws Error and its kinds if the scene, its mesh or its

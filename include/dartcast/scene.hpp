@@ -1,7 +1,7 @@
 // A scene: all that a simulation is made of, as plain data. It can be built in C++, or read from TOML
 // (dartcast/scene_file.hpp; keys: docs/scene.md).
 //
-// Some members may name a file instead of holding its data: load_scene_files() replaces the name by the data.
+// Some members may name a file instead of holding its data: load_scene_files() replaces the name with the data.
 #pragma once
 
 #include <algorithm>
@@ -161,7 +161,7 @@ struct InletParticles {
   Waveform waveform = {};                        ///< of the rate
   std::vector<double> burst_times = {};          ///< s
   std::uint64_t burst_count = 0;                 ///< particles that enter at each of these times, together
-  /// kg / s, above 0: instead of `rate`, which is then this by the mean mass of a particle.
+  /// kg / s, above 0: instead of `rate`, which is then this over the mean mass of a particle.
   double mass_rate = 0.0;
 };
 
@@ -198,7 +198,7 @@ struct ParticlesScene {
   std::uint64_t number = 1;
 };
 
-/// Where a body has its particles: in a solid filled by spheres, on its surface, or in its volume.
+/// Where a body has its particles: in a solid filled with spheres, on its surface, or in its volume.
 enum class BodySamples : std::uint8_t { solid, surface, volume };
 
 /// A body: a surface, where it is put, how it is sampled, what it is made of.
@@ -344,7 +344,7 @@ struct OutputScene {
   /// Steps between two frames; 0: no frames. None: default_every() of the run's steps.
   std::optional<std::uint64_t> every = {};
   bool contacts = false;
-  bool report = true;  ///< report.html, where `every` > 0 (dartcast/report.hpp)
+  bool report = true;  ///< report.html, if `every` > 0 (dartcast/report.hpp)
   /// None: frames of the environment are `small`, all others are not compressed.
   std::optional<Compression> compression = {};
 };

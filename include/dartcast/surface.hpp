@@ -85,7 +85,7 @@ class Surface {
   /// The point in space, rounded. A place on an edge is the same point from both sides. A place at a vertex is the
   /// vertex's position.
   [[nodiscard]] Vec3 point(const SurfacePlace& place) const;
-  /// A place by any weights that are finite, not negative and not all 0. The weights are scaled to sum to 1. Throws
+  /// A place from any weights that are finite, not negative and not all 0. The weights are scaled to sum to 1. Throws
   /// InvalidArgument if they are not such weights, or if there is no such triangle.
   [[nodiscard]] SurfacePlace place(SimplexId triangle, const std::array<double, 3>& weights) const;
 

@@ -24,7 +24,7 @@ struct SolidHandle {
   [[nodiscard]] Use use() const { return Use(*environment->usage, "the Environment of this object"); }
   [[nodiscard]] const T& object() const { return *solid; }
   [[nodiscard]] T& target() const { return changeable(); }
-  /// Throws InvalidArgument where it belongs to a simulation, which alone changes it.
+  /// Throws InvalidArgument if it belongs to a simulation, which alone changes it.
   [[nodiscard]] T& changeable() const {
     if (!own) throw InvalidArgument("this object belongs to a simulation, which alone steps and changes it");
     return *own;

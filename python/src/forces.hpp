@@ -7,8 +7,8 @@
 
 namespace dartcast::python {
 
-/// A law that calls this function with Python's lock taken; none where it is None. It throws what the function raises, and
-/// InvalidArgument where the function has kept an array.
+/// A law that calls this function with Python's lock taken; none if it is None. It throws what the function raises, and
+/// InvalidArgument if the function has kept an array.
 ParticleLaw law_of(const pybind11::object& function);
 
 }  // namespace dartcast::python

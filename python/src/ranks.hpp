@@ -32,7 +32,7 @@ class PythonRanks final : public Ranks {
   unsigned size_;
 };
 
-/// None where the object is None.
+/// None if the object is None.
 std::unique_ptr<PythonRanks> python_ranks(const pybind11::object& object);
 
 }  // namespace dartcast::python

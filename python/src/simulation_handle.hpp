@@ -27,7 +27,7 @@ class SimulationOwner {
   ~SimulationOwner();
 
   [[nodiscard]] Simulation& simulation() const { return *simulation_; }
-  /// Null where the simulation has made it.
+  /// Null if the simulation has made it.
   [[nodiscard]] const std::shared_ptr<EnvironmentHandle>& callers() const { return callers_; }
 
  private:
@@ -53,7 +53,7 @@ struct SimulationHandle {
 std::shared_ptr<pybind11::object> shared_object(pybind11::object object);
 
 /// A function that gets the environment at the end of each edit, and can read it until it returns; nothing
-/// where it is None.
+/// if it is None.
 Simulation::AfterEdit after_edit_callback(pybind11::object function);
 
 /// The answers at walls: WallResponses, a single response, a dict of them by the names of patches, or None.

@@ -37,12 +37,12 @@ SurfacePlace place_of(const PlaceRow& row);
 PlaceRow no_place();
 
 bool is_places(const pybind11::object& x);
-/// The rows of an array of places. Throws TypeError where it is none, or a writable one is asked for and it is not.
+/// The rows of an array of places. Throws TypeError if it is none, or a writable one is asked for and it is not.
 std::span<const PlaceRow> place_rows(const pybind11::object& x, const char* name);
 std::span<PlaceRow> writable_place_rows(const pybind11::object& x, const char* name);
 std::vector<SurfacePlace> places_of(std::span<const PlaceRow> rows);
 
-/// Throw InvalidArgument where the surface has no such triangle, or the place is none of it.
+/// Throw InvalidArgument if the surface has no such triangle, or the place is none of it.
 void check_triangle(const Surface& surface, SimplexId t, const char* caller);
 void check_place(const Surface& surface, const SurfacePlace& place, const char* caller);
 /// The same for all; the message names the place.

@@ -106,7 +106,7 @@ class ContactPackets {
   /// last pass is forwards. Cost: some 6 ns a contact and iteration.
   void solve(std::span<ContactBody> bodies, unsigned iterations, Threads threads,
              InstructionSet set = best_instruction_set());
-  /// The same for displacements over a unit of time, by impulses along normals that are not kept.
+  /// The same for displacements over a unit of time, with impulses along normals that are not kept.
   void position_correction(std::span<ContactBody> bodies, unsigned iterations, Threads threads,
                            InstructionSet set = best_instruction_set());
   /// Replaces the bounds of contacts that have an impulse and rebound. Returns whether there are any.

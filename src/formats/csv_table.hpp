@@ -12,7 +12,7 @@
 
 namespace dartcast {
 
-/// A file whose first line names its columns. Fields are separated by commas; or, where the first line has none, by
+/// A file whose first line names its columns. Fields are separated by commas; or, if the first line has none, by
 /// semicolons or tabs. Blanks and quotes around them do not count, and neither does a byte-order mark.
 class CsvTable {
  public:

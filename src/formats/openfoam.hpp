@@ -40,7 +40,7 @@ FieldSeries openfoam_points(const std::filesystem::path& path);
 FieldSeries openfoam_field(const std::filesystem::path& path, std::string_view field);
 
 /// Whether system/fvSchemes of a case says `ddtSchemes { default steadyState; }`: its times are then iterations. False
-/// where the file is missing or says nothing of the kind.
+/// if the file is missing or says nothing of the kind.
 bool is_steady_openfoam(const std::filesystem::path& path);
 
 /// The points of CASE/TIME in a mesh of space, by label, as the file has them. Throws as parse_openfoam().

@@ -25,11 +25,11 @@ struct MeshScale {
   [[nodiscard]] double mean_edge() const {
     return edge_count == 0 ? 0.0 : edges.value() / static_cast<double>(edge_count);
   }
-  /// The longest side of the box around it; 0 where there is no cell.
+  /// The longest side of the box around it; 0 if there is no cell.
   [[nodiscard]] double size() const;
 };
 
-/// Measures the cells that `parts` gives the number `part`, or all where it is empty. Precondition: connectivity is well formed.
+/// Measures the cells that `parts` gives the number `part`; all if it is empty. Precondition: well-formed connectivity.
 MeshScale mesh_scale(const MeshData& mesh, Threads threads = {}, std::span<const std::uint32_t> parts = {},
                      std::uint32_t part = 0);
 

@@ -36,7 +36,7 @@ PointWeights weights_of_patch_faces(const MeshData& mesh);
 std::vector<double> values_at_points(const PointWeights& weights, std::span<const double> values,
                                      std::size_t components);
 
-/// The volume's centre of each cell, in the plane the area's. Where it has no size: the mean of its faces' corners.
+/// The volume's centre of each cell, in the plane the area's. If it has no size: the mean of its faces' corners.
 std::vector<Vec3> cell_centres(const MeshData& mesh);
 
 }  // namespace dartcast

@@ -22,7 +22,7 @@ class Recording final : public Recorder {
     bool contacts = false;
     std::optional<Compression> compression = {};
     std::uint32_t pieces = 1;              ///< of a frame of particles: one for each rank
-    std::uint32_t environment_pieces = 1;  ///< of a frame of the environment, where ranks have parts of it
+    std::uint32_t environment_pieces = 1;  ///< of a frame of the environment, if ranks have parts of it
 
     [[nodiscard]] Compression of_particles() const { return compression.value_or(Compression::none); }
     [[nodiscard]] Compression of_environment() const { return compression.value_or(Compression::small); }

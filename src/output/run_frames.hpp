@@ -30,14 +30,14 @@ struct RunFrame {
 
 class RunFrames {
  public:
-  /// Throws InvalidArgument where the folder has no list of frames.
+  /// Throws InvalidArgument if the folder has no list of frames.
   explicit RunFrames(const std::filesystem::path& folder);
 
   [[nodiscard]] std::size_t size() const { return particles_.files.size(); }
   /// Whether the walls stand still: then those of frame 0 are those of all.
   [[nodiscard]] bool walls_stand() const { return environment_.files.size() == 1; }
   [[nodiscard]] const std::vector<double>& times() const { return particles_.times; }
-  /// Throws Error where its file cannot be read.
+  /// Throws Error if its file cannot be read.
   [[nodiscard]] RunFrame read(std::size_t frame) const;
   [[nodiscard]] RunWalls walls(std::size_t frame) const;
 

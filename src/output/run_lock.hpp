@@ -5,7 +5,7 @@
 
 namespace dartcast {
 
-/// Holds a run's folder while it lives, by a lock on the file run.lock in it. The kernel gives the lock back when the
+/// Holds a run's folder while it lives, with a lock on the file run.lock in it. The kernel gives the lock back when the
 /// process ends, however it ends; a file that is left behind locks nothing. On a file system without locks nothing is
 /// held.
 class RunLock {

@@ -23,7 +23,7 @@ struct Deposition {
   double area = 0.0;      ///< 0: not known
   double per_area = 0.0;
 };
-/// Those of all patches, and of walls without one where particles ended there.
+/// Those of all patches, and of walls without one if particles ended there.
 std::vector<Deposition> depositions(const Summary& summary);
 /// The same as a table.
 std::string deposition_csv(const Summary& summary);

@@ -30,7 +30,7 @@ struct MovingPair {
 /// if the filter decides, some 5 us if it does so in double-doubles, some 70 us elsewhere.
 std::optional<double> first_touch(const MovingPair& pair, PairKind kind);
 
-/// Whether first_touch() has a time. Where that is hard to find, this is quicker.
+/// Whether first_touch() has a time. If that is hard to find, this is quicker.
 bool touches(const MovingPair& pair, PairKind kind);
 
 enum class FilterAnswer : std::uint8_t { apart, touching, undecided };

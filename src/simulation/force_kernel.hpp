@@ -30,7 +30,7 @@ struct FieldAtPoints {
   double per_time = 0.0;  ///< 1 / s: the inverse of the time from `earlier` to `later`
 };
 
-/// Samples of a field at consecutive particles; all spans have the same size, or are empty where nothing is asked for.
+/// Samples of a field at consecutive particles; all spans have the same size, or are empty if nothing is asked for.
 struct SamplesOfField {
   std::span<Vec3> values;
   std::span<VelocityGradient> gradients;
@@ -76,7 +76,7 @@ void shift_samples(const SamplesOfField& samples, std::span<const Vec3> ways,
 void apply_forces(const ForceTerms& terms, const LawParticles& particles, const LawSamples& samples,
                   const LawResult& result, InstructionSet set = best_instruction_set());
 
-/// Moves particles for a time under a result that is held: exact but for rounding, and with rotations by Boris' scheme.
+/// Moves particles for a time under a result that is held, exact but for rounding, with the rotations of Boris' scheme.
 /// `ends`: the velocities then.
 struct HeldMotion {
   std::span<const Vec3> starts;

@@ -79,11 +79,11 @@ struct ParticleSet {
   void complete(std::uint64_t id, const NewParticle& particle);
   /// Removes the particles marked with 1.
   void remove(std::span<const std::uint8_t> marks);
-  /// The same where the states are removed already.
+  /// The same if the states are removed already.
   void remove_rows(std::span<const std::uint8_t> marks);
   void count_spheres();
   void put_in_order_of_ids();
-  /// Calls add(), and undoes all that it has added where it throws.
+  /// Calls add(), and undoes all that it has added if it throws.
   template <class Add>
   void enlarge(Add&& add) {
     const std::size_t rows = table.rows();

@@ -29,7 +29,7 @@ class SphereContacts {
   /// Bodies that the spheres meet; they step after each step of the particles.
   void set_bodies(Bodies& bodies) { bodies_ = &bodies; }
   [[nodiscard]] double mass(double radius) const;
-  /// Changes the velocities and targets of a segment by impulses. `acceleration`: that of all spheres.
+  /// Changes the velocities and targets of a segment with impulses. `acceleration`: that of all spheres.
   CollisionCounts collide(ParticleSet& set, std::span<Vec3> targets, double dt, bool moving, const Vec3& acceleration);
   /// For SphereStepper::advance().
   [[nodiscard]] std::span<const double> clearances() const { return clearances_; }

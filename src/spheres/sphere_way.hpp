@@ -24,7 +24,7 @@ struct SphereWay {
   std::uint16_t triangle = 0;  ///< in the face's fan
 };
 
-/// A sphere at the start of a stretch. Positions before the last move where `moving`, else as they are now.
+/// A sphere at the start of a stretch. Positions before the last move if `moving`, else as they are now.
 struct SphereInterval {
   Cell cell;
   MovingSphere sphere;

@@ -1,4 +1,4 @@
-// A replacement of cells by others, checked before anything is changed.
+// A replacement of cells with others, checked before anything is changed.
 #pragma once
 
 #include <span>

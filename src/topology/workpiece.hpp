@@ -33,13 +33,13 @@ class Workpiece {
 
   /// The other side of a face; invalid on the boundary. Takes the cell there if that has not been done.
   FaceOfDraft opposite(FaceOfDraft f);
-  /// Splits a face on both sides by an edge between two of its corners. Precondition: no edge of it joins them.
+  /// Splits a face on both sides with an edge between two of its corners. Precondition: no edge of it joins them.
   void split_face(FaceOfDraft f, Vertex u, Vertex v);
   /// Splits a cell along a face. Its faces marked in `leaving`, and the other side of `cut`, go to a new draft, whose
   /// number is returned. `cut`: as the part that stays sees it, without links.
   std::uint32_t split_cell(std::uint32_t number, std::span<const std::uint8_t> leaving, DraftFace cut);
 
-  /// Replaces the cells by the drafts. Returns the new cells in the order of the drafts. Throws as
+  /// Replaces the cells with the drafts. Returns the new cells in the order of the drafts. Throws as
   /// Transaction::replace().
   std::vector<Cell> put() { return rework_.put(); }
 

@@ -17,7 +17,7 @@
 
 namespace dartcast::detail {
 
-/// The barycentric coordinates, up to a factor, of the point where the line pq passes a facet; 0 exactly where it meets
+/// The barycentric coordinates, up to a factor, of the point where the line pq passes a facet; 0 exactly if it meets
 /// the side opposite to that corner. Precondition: it passes the closed facet, and is not in its plane.
 inline std::array<double, 3> passing_weights(const Corners& v, unsigned facet, const Vec3& p, const Vec3& q) {
   const auto& f = facet_corners[facet];

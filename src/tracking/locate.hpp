@@ -1,4 +1,4 @@
-// Exact location of points: by a grid over the cells' bounding boxes, then exact signs.
+// Exact location of points: with a grid over the cells' bounding boxes, then exact signs.
 #pragma once
 
 #include <array>

@@ -14,8 +14,8 @@ struct PassedFacet {
   unsigned facet;
 };
 
-/// As dartcast::walk(). `passed`: where a walk ends at a wall that q is beyond, the last facet is the wall. A walk that begins
-/// at a wall, and anew from another simplex around p, has passed what the second one does.
+/// As dartcast::walk(). `passed`: if a walk ends at a wall that q is beyond, the last facet is the wall. A walk that
+/// begins at a wall, and anew from another simplex around p, has passed what the second one does.
 template <class Positions, std::size_t N>
 Walk walk_listed(const Space<Positions, N>& space, SimplexId start, const Vec3& p, const Vec3& q,
                  std::vector<PassedFacet>& passed) {

@@ -1,7 +1,7 @@
 // Vectors and arrays between NumPy and C++.
 //
 // An argument that is float64 of shape (n, 3) and C-contiguous is taken without a copy. Lists, frames of pandas, strided
-// arrays and arrays of other numbers are copied, where each number is a double to the bit. All else is refused with a
+// arrays and arrays of other numbers are copied, if each number is a double to the bit. All else is refused with a
 // message that says what was expected, what came, and how to convert it. An array that a call writes to is never copied.
 // A result is a fresh array. One that is an attribute is read-only: writing to it would change nothing.
 #pragma once

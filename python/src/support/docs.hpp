@@ -10,7 +10,7 @@
 namespace dartcast::python {
 
 /// The comment of a public C++ name, as "Environment::advance"; those of several overloads one after another. Empty
-/// where the header has none. Throws std::logic_error where no header has the name: importing the package then fails.
+/// if the header has none. Throws std::logic_error if no header has the name: importing the package then fails.
 const char* doc(std::string_view name);
 
 /// Whether a header has the name.
@@ -22,13 +22,13 @@ struct Argument {
   pybind11::object (*value)() = nullptr;
 };
 
-/// The comment of a name in the headers, and its arguments, for a definition in Python. Where a definition names its
+/// The comment of a name in the headers, and its arguments, for a definition in Python. If a definition names its
 /// arguments itself, these come first, and count.
 struct About {
   std::string text;
   std::span<const Argument> arguments;
 
-  /// For pybind11. Throws std::logic_error where the function of Python has more arguments, or fewer.
+  /// For pybind11. Throws std::logic_error if the function of Python has more arguments, or fewer.
   void add_to(pybind11::detail::function_record& function) const;
 };
 /// `more`: a text behind the comment, after an empty line.

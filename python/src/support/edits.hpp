@@ -26,7 +26,7 @@ struct TransactionHandle {
   std::unique_ptr<OwnTransaction> own;
   std::shared_ptr<Usage> usage = std::make_shared<Usage>();
   std::shared_ptr<Savepoints> savepoints = std::make_shared<Savepoints>();
-  std::function<Transaction&()> of_surface = {};  ///< that of a surface's edit: throws where that has ended
+  std::function<Transaction&()> of_surface = {};  ///< that of a surface's edit: throws if that has ended
 
   [[nodiscard]] Transaction& open() const;
   /// Whether it belongs to an edit, with which it ends.

@@ -16,7 +16,7 @@ namespace dartcast::python {
 
 /// Makes the class dartcast.NAME with these members.
 void make_enum(pybind11::module_& m, const char* name, const pybind11::dict& members);
-/// The number of a member; false where the object is none of the class, no number and no name of a member.
+/// The number of a member; false if the object is none of the class, no number and no name of a member.
 bool load_enum(const char* name, pybind11::handle from, std::int64_t& value);
 pybind11::handle cast_enum(const char* name, std::int64_t value);
 

@@ -14,7 +14,7 @@ using ParticlesPointer = std::shared_ptr<ParticlesHandle>;
 
 /// The result of add(): bool (n,), whether each position was added; uint32 (m,), the indices of those that were.
 using Added = Typed<"tuple[NDArray[bool], NDArray[uint32]]">;
-/// Warns where more than half were not.
+/// Warns if more than half were not.
 Added added_of(std::span<const AddResult> results);
 
 /// An environment and particles for the time of one call.
@@ -26,7 +26,7 @@ struct UseBoth {
       : environment(*e.usage, "the environment"), particles(*p.usage, "the set of particles") {}
 };
 
-/// Throws InvalidArgument while a next_points() block is open, and where the particles need positions that a block has
+/// Throws InvalidArgument while a next_points() block is open, and if the particles need positions that a block has
 /// overwritten.
 void expect_positions_before(const EnvironmentHandle& e, const ParticlesHandle& p, const char* call);
 

@@ -59,7 +59,7 @@ struct EnvironmentHandle {
 
   [[nodiscard]] Use use() const { return Use(*usage, "the environment"); }
   [[nodiscard]] const Environment& object() const { return *environment; }
-  /// To change it. Throws InvalidArgument where it is borrowed: `remedy` says what to call instead.
+  /// To change it. Throws InvalidArgument if it is borrowed: `remedy` says what to call instead.
   Environment& changeable(const char* remedy) const {
     if (borrowed) throw InvalidArgument(std::string("this environment belongs to a simulation: ") + remedy);
     return *environment;
@@ -93,7 +93,7 @@ struct MapHandle {
   const CombinatorialMap* map = nullptr;
   CombinatorialMap* changeable = nullptr;  ///< null: it belongs to something else
   std::shared_ptr<Usage> usage = std::make_shared<Usage>();
-  std::function<const CombinatorialMap&()> of_edit = {};  ///< the map of an edit: throws where that has ended
+  std::function<const CombinatorialMap&()> of_edit = {};  ///< the map of an edit: throws if that has ended
 
   [[nodiscard]] Use use() const { return Use(*usage, "the map"); }
   [[nodiscard]] const CombinatorialMap& object() const { return of_edit ? of_edit() : *map; }
@@ -104,7 +104,7 @@ class Savepoints {
  public:
   /// Returns its number, which no other savepoint of the process has.
   std::uint64_t add(const Transaction::Savepoint& savepoint);
-  /// The savepoint; forgets all later ones. Throws InvalidArgument where it is none of these.
+  /// The savepoint; forgets all later ones. Throws InvalidArgument if it is none of these.
   Transaction::Savepoint return_to(std::uint64_t number);
   void clear() { known_.clear(); }
 
@@ -136,7 +136,7 @@ struct EditHandle {
           "this edit has ended: use it in its `with` block, or in the function given to edit(), only");
     return *edit;
   }
-  /// Throws InUse while another thread's call uses the edit. Undoes it where it is Python's own and not committed.
+  /// Throws InUse while another thread's call uses the edit. Undoes it if it is Python's own and not committed.
   void end() {
     const Use last(*usage, "the edit");
     edit = nullptr;

@@ -18,7 +18,7 @@ namespace dartcast::python {
 /// The named tuple of this name in dartcast/_ids.py.
 pybind11::handle tuple_type(const char* name);
 
-/// The integer in a Python object, NumPy's included; at most `largest`. Throws ValueError beyond it; false where the
+/// The integer in a Python object, NumPy's included; at most `largest`. Throws ValueError beyond it; false if the
 /// object is no integer.
 bool load_integer(pybind11::handle from, std::uint64_t largest, std::uint64_t& value);
 
@@ -28,7 +28,7 @@ std::optional<T> or_none(const T& id) {
   return id.valid() ? std::optional<T>(id) : std::nullopt;
 }
 
-/// Two integers of a tuple, or of a row of a structured array; false where it is none of two.
+/// Two integers of a tuple, or of a row of a structured array; false if it is none of two.
 bool load_pair(pybind11::handle from, std::array<std::uint64_t, 2>& values);
 
 }  // namespace dartcast::python

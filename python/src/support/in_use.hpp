@@ -25,7 +25,7 @@ class Usage {
   std::atomic<bool> used_ = false;
 };
 
-/// Holds an object for one call. Throws InUse, which names the object, where a call has it already.
+/// Holds an object for one call. Throws InUse, which names the object, if a call has it already.
 class Use {
  public:
   Use(Usage& usage, const char* what) : usage_(usage) {

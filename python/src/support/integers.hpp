@@ -17,7 +17,7 @@ namespace dartcast::python {
 /// that of (n, columns). Throws TypeError for another shape or no integers.
 pybind11::array_t<std::int64_t> wide_integers(const pybind11::object& x, const std::string& name, std::size_t columns);
 
-/// Adds the numbers to a vector, row by row. Throws InvalidArgument, which names the row, where T cannot hold a number
+/// Adds the numbers to a vector, row by row. Throws InvalidArgument, which names the row, if T cannot hold a number
 /// or it is not below `end`.
 template <class T>
 void append_integers(const pybind11::object& x, const std::string& name, std::size_t columns, std::vector<T>& to,

@@ -17,12 +17,12 @@ void expect_face(const CombinatorialMap& map, CellFace f);
 void expect_simplex(const CombinatorialMap& map, SimplexId s);
 void expect_vertex(const CombinatorialMap& map, Vertex v);
 void expect_pool(std::uint32_t pool);
-/// Where there are not as many positions as vertices.
+/// If there are not as many positions as vertices.
 void expect_positions(const CombinatorialMap& map, std::size_t count, const char* name);
-/// Where a number is not below its end. `what`: "dart", "face".
+/// If a number is not below its end. `what`: "dart", "face".
 void expect_number(std::size_t number, std::size_t end, const char* what);
 
-/// Where a number is not finite, or the normal is zero.
+/// If a number is not finite, or the normal is zero.
 void expect_plane(const Plane& plane);
 
 /// The map of a complex, to be read.

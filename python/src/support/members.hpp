@@ -239,7 +239,7 @@ inline About about_member(pybind11::handle type, const char* name, std::string_v
   return {std::string(text), {}};
 }
 
-/// A method. `text`: its docstring, where the header does not say it.
+/// A method. `text`: its docstring, if the header does not say it.
 template <class Handle, class... Options, class Function>
 void method(pybind11::class_<Handle, Options...>& c, const char* name, Function f, std::string_view text = {}) {
   const About said = about_member(c, name, text);
@@ -269,7 +269,8 @@ template <class First>
 using Unlocked =
     std::conditional_t<std::is_same_v<First, const CombinatorialMap&>, Locked, pybind11::gil_scoped_release>;
 
-/// A function of the module, which runs without Python's lock but for questions about a map. `said`: its arguments and docstring, where there are several functions of this name.
+/// A function of the module. It runs without Python's lock, but for questions about a map. `said`: its arguments and
+/// docstring, if there are several functions of this name.
 template <class Result, class First, class... Arguments>
 void function(pybind11::module_& m, const char* name, Result (*f)(First, Arguments...), const About& said) {
   const auto call = [f, names = said.arguments](const typename Given<First>::Python& first,

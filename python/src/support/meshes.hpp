@@ -25,7 +25,7 @@ class MeshUse {
   const MeshData* mesh_;
 };
 
-/// Throws InvalidArgument where the arrays of a mesh contradict each other: sizes, offsets, numbers of points. Cost:
+/// Throws InvalidArgument if the arrays of a mesh contradict each other: sizes, offsets, numbers of points. Cost:
 /// linear.
 void check_arrays(const MeshData& mesh);
 
@@ -36,11 +36,11 @@ std::string first_defect(const MeshReport& report);
 /// InvalidArgument, which names the right call, if it is a surface.
 void expect_mesh_file(const std::filesystem::path& path, const MeshFile& file);
 
-/// A copy as check_and_repair() repairs it. Throws InvalidMesh, with the first defect, where that refuses it. May be
+/// A copy as check_and_repair() repairs it. Throws InvalidMesh, with the first defect, if that refuses it. May be
 /// called without Python's lock.
 MeshData checked_mesh(const MeshData& mesh);
 
-/// Throws InvalidMesh as checked_mesh() does, and InvalidArgument where check_and_repair() would change it. May be
+/// Throws InvalidMesh as checked_mesh() does, and InvalidArgument if check_and_repair() would change it. May be
 /// called without Python's lock.
 void require_checked(const MeshData& mesh);
 

@@ -94,14 +94,14 @@ pybind11::class_<T> class_of() {
   return pybind11::reinterpret_borrow<pybind11::class_<T>>(pybind11::type::of<T>());
 }
 
-/// A record under construction. `name`: in Python; `cpp`: in C++, where it differs.
+/// A record under construction. `name`: in Python; `cpp`: in C++, if it differs.
 template <class T>
 class Record {
  public:
   Record(pybind11::handle scope, const char* name, const char* cpp = nullptr)
       : class_(scope, name, doc(cpp != nullptr ? cpp : name)), members_(class_, name, cpp != nullptr ? cpp : name) {}
 
-  /// A member that can be read and set. `cpp_member`: its name in C++, where it differs.
+  /// A member that can be read and set. `cpp_member`: its name in C++, if it differs.
   template <class M>
   Record& field(const char* name, M T::*member, const char* cpp_member = nullptr) {
     const auto offset =

@@ -15,19 +15,19 @@
 
 namespace dartcast::python {
 
-/// A WallResponse, or a Reflect, Slide, Stick, Absorb or Escape. False where the object is none of these.
+/// A WallResponse, or a Reflect, Slide, Stick, Absorb or Escape. False if the object is none of these.
 bool load_response(pybind11::handle from, WallResponse& response);
 
 /// WallResponses, or what they are made from: one response, or a dict with patches by name or number, and the general
 /// one at None. Throws TypeError for anything else, InvalidArgument for a name that is no patch of the map. `map`: null
-/// where there is none, so that patches have numbers only.
+/// if there is none, so that patches have numbers only.
 WallResponses responses_of(const pybind11::object& given, const CombinatorialMap* map);
 
 /// The answers of respond_with(), with all that they refer to. At one address for its life.
 struct LibraryAnswers {
   WallResponses responses;
   pybind11::object velocities, statuses;  ///< arrays; kept
-  std::vector<ParticleStatus> own;        ///< where the caller gives no statuses
+  std::vector<ParticleStatus> own;        ///< if the caller gives no statuses
   std::size_t size = 0;                   ///< number of particles
   ContactCallback callback;
 
@@ -36,7 +36,7 @@ struct LibraryAnswers {
   LibraryAnswers& operator=(const LibraryAnswers&) = delete;
   ~LibraryAnswers() = default;
 
-  /// Throws InvalidArgument where there are not as many particles.
+  /// Throws InvalidArgument if there are not as many particles.
   void expect_particles(std::size_t count) const;
 };
 
@@ -54,7 +54,7 @@ struct RespondArguments {
 /// The answers to the contacts of one call. At one address for its life.
 class Answers {
  public:
-  /// `count`: of particles. Throws TypeError and InvalidArgument where the arguments do not fit each other.
+  /// `count`: of particles. Throws TypeError and InvalidArgument if the arguments do not fit each other.
   Answers(const RespondArguments& given, const CombinatorialMap& map, std::size_t count);
   Answers(const Answers&) = delete;
   Answers& operator=(const Answers&) = delete;

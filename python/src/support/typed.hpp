@@ -33,7 +33,7 @@ struct pybind11::detail::handle_type_name<dartcast::python::Typed<Type>> {
 namespace dartcast::python {
 
 /// An argument of points, as the next functions take it: the same object, or a copy of its numbers as float64 (n, 3),
-/// C-contiguous. The same object, too, where it has other numbers or another shape.
+/// C-contiguous. The same object, too, if it has other numbers or another shape.
 pybind11::object converted_vectors(pybind11::handle x);
 /// The same of float64 (n,).
 pybind11::object converted_numbers(pybind11::handle x);

@@ -16,7 +16,7 @@
 
 namespace dartcast {
 
-/// More than any label: points, faces and cells are numbered by 32 bits here.
+/// More than any label: points, faces and cells are numbered with 32 bits here.
 inline constexpr std::uint64_t no_label_limit = 0xffffffffU;
 
 /// Whether the folder has the file, or the file with .gz.

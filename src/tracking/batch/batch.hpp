@@ -46,7 +46,7 @@ inline constexpr StepStatus step_untouched = 0xfffe;
 struct BatchSteps {
   std::span<ParticleState> states;
   std::span<VertexNumbers> vertices;  ///< of each state
-  /// moved: of previous geometry; else of barycentric coordinates. Read where they match; written for each step taken.
+  /// moved: of previous geometry; else of barycentric coordinates. Read if they match; written for each step taken.
   SimplexCacheSpan caches;
   std::span<const Vec3> targets;
   std::span<StepStatus> status;     ///< out

@@ -183,7 +183,7 @@ class OnePart {
     const Double4 far = 0x1p+56 * l2_;
     in_range_ =
         (l2_ > 0x1p-140) & (l2_ < 0x1p+140) & (farthest < far) & (square(own) < far) & (square(q) < 0x1p+44 * l2_);
-    // Not a number where the previous geometry is unknown: then every comparison is false.
+    // Not a number if the previous geometry is unknown: then every comparison is false.
     volume_ = (load_doubles(previous_caches.w[0].data()) + load_doubles(previous_caches.w[1].data())) +
               (load_doubles(previous_caches.w[2].data()) + load_doubles(previous_caches.w[3].data()));
     limit_ = 1.98 * tolerance * volume_;

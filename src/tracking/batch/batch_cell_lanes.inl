@@ -105,7 +105,7 @@ struct CellWalks8 {
     return {narrowed(low.x, high.x), narrowed(low.y, high.y), narrowed(low.z, high.z)};
   }
 
-  // The bound of sides. Infinite where a corner is out of reach.
+  // The bound of sides. Infinite if a corner is out of reach.
   [[nodiscard]] [[gnu::always_inline]] Float8 bound(const LineCorner8 (&far)[4]) const {
     Float8 most = Float8{};
     Float8 farthest = Float8{};
@@ -147,7 +147,7 @@ struct CellWalks8 {
     const Bits8 from_next = negative_bits(diagonal[0], diagonal[1], diagonal[2], diagonal[3]);
     const Bits8 from_1 = negative_bits(diagonal[4]);
     const Bits8 next = next_numbers(l);
-    // A triangle is left by where all its edges turn around the line, in their order as seen from outside. In each row
+    // The line leaves by a triangle if all its edges turn around it, in their order as seen from outside. In each row
     // the first case is that of a diagonal that ends at a_(i+1) or b1.
     return {
         ~entry_behind & ((from_next & ~d & l) | (~from_next & ~next & d)),

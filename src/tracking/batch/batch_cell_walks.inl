@@ -1,4 +1,4 @@
-// Farther walks: through hexahedra cell by cell (batch_cell_lanes.inl), from the first face that they cross on. Where a
+// Farther walks: through hexahedra cell by cell (batch_cell_lanes.inl), from the first face that they cross on. If a
 // cell is undecided, or the target is near, they go from simplex to simplex (batch_far_walks.inl), and on through cells
 // behind the next face. Part of the batch's kernel (tracking/batch/batch_kernel.inl).
 #pragma once
@@ -83,7 +83,7 @@ struct CellPlace {
     rows = map.view(Cell(hexahedra, 0), record).shape().exits().cell_rows().data();
   }
 
-  // Leaves it, and prefetches the cell beyond. Returns 1 where that is a wall, or no hexahedron.
+  // Leaves it, and prefetches the cell beyond. Returns 1 if that is a wall, or no hexahedron.
   [[gnu::always_inline]] std::uint32_t leave(int exit, const std::uint32_t* records) {
     const CellWay& way = row->ways[static_cast<unsigned>(exit)];
     const std::uint32_t bits = record[1];
@@ -144,7 +144,7 @@ class CellLoop {
     return live;
   }
 
-  // Begins the next walk in lane l. Returns false where there is none.
+  // Begins the next walk in lane l. Returns false if there is none.
   bool start_next(std::uint32_t l) {
     if (queue_.next == queue_.count) return false;
     if (queue_.next % 4 == 0) stage();
@@ -282,7 +282,7 @@ class WalksToCells : public FarWalks<false> {
   }
 
  private:
-  // Resumes the next walk that has passed cells. Returns false where there is none.
+  // Resumes the next walk that has passed cells. Returns false if there is none.
   bool resume_next(std::uint32_t l) {
     while (queue_.next < queue_.count) {
       if (queue_.next % 4 == 0) stage();

@@ -38,7 +38,7 @@ struct LineLanes {
     for (LinePlace& at : places) at.corner = positions;  // lanes without a walk read it, too
   }
 
-  // Begins a walk in lane l, in its first simplex. Returns false where it is not proved by which facet the line enters it.
+  // Begins a walk in lane l, in its first simplex. Returns false if it is not proved by which facet the line enters it.
   bool begin(std::uint32_t l, const LineStarts4& starts, unsigned from, std::uint32_t particle, const ParticleState& s,
              const std::uint32_t* record) {
     const unsigned facet = facets_entered[static_cast<std::size_t>(starts.turns[from])];
@@ -92,7 +92,7 @@ class LineLoop {
     return live;
   }
 
-  // Finds the new corner of the walk in lane l, or of the first one after it that has one. Returns false where there is
+  // Finds the new corner of the walk in lane l, or of the first one after it that has one. Returns false if there is
   // none.
   bool find_corners(std::uint32_t l) {
     LinePlace& at = kind_.places[l];
@@ -153,14 +153,14 @@ inline WalkCursor passed_cursor(const CombinatorialMap& map, const LinePlace& at
   return corners_of_simplex(map.view(Cell(cursor.cell), cursor.record), cursor.index);
 }
 
-// Walks from simplex to simplex. Where a sign is not proved, they go on in rounds.
+// Walks from simplex to simplex. If a sign is not proved, they go on in rounds.
 template <bool moved>
 class FarWalks : public LineLanes {
  public:
   FarWalks(Batch<moved>& batch, const BatchList<WalkStart>& far, BatchList<WalkCursor>& rounds)
       : LineLanes(batch.now), b(batch), far_(far), rounds_(rounds) {}
 
-  // Begins the next walk that can begin, in lane l. Returns false where there is none.
+  // Begins the next walk that can begin, in lane l. Returns false if there is none.
   bool start_next(std::uint32_t l) {
     while (next_ < far_.count) {
       if (next_ % 4 == 0) stage();

@@ -73,7 +73,7 @@ inline std::uint32_t defer_unusual(Batch<moved>& b, const FirstBlock& at, std::u
   return deferred;
 }
 
-// Where vertices stand still, by barycentric coordinates: only steps that leave the simplex read the scene.
+// If vertices stand still, by barycentric coordinates: only steps that leave the simplex read the scene.
 class FirstSimplexAtRest {
  public:
   FirstSimplexAtRest(Batch<false>& batch, bool cells_positive, WalkLists& lists)
@@ -99,7 +99,7 @@ class FirstSimplexAtRest {
   }
 
  private:
-  // Stores a bit for each facet that a target is behind; none at all where the sign of any coordinate is not proved.
+  // Stores a bit for each facet that a target is behind; none at all if the sign of any coordinate is not proved.
   void test() {
     on_facets_ = still_free_ = 0;
     for (std::uint32_t k = 0; k < at.count; k += 4) {
@@ -124,7 +124,7 @@ class FirstSimplexAtRest {
     on_facets_ &= at.all;
   }
 
-  // The same where coordinates are exact: zeros are proved, too. A particle with exact coordinates is on no wall. A
+  // The same if coordinates are exact: zeros are proved, too. A particle with exact coordinates is on no wall. A
   // target that lies on no other facets than its particle is on no wall either: such a wall would hold the particle.
   [[gnu::noinline]] void test_zeros(std::uint32_t k, const Vec3x4& q, const Mask4& in_range, const Mask4& proved,
                                     const Mask4& negative) {
@@ -204,7 +204,7 @@ class FirstSimplexAtRest {
   BatchList<WalkStart> undecided_;
 };
 
-// Where vertices move, by determinants.
+// If vertices move, by determinants.
 class FirstSimplexMoved {
  public:
   FirstSimplexMoved(Batch<true>& batch, const StepOptions& options, WalkLists& lists)
@@ -248,7 +248,7 @@ class FirstSimplexMoved {
   }
 
   // Whether a particle that touches a wall, and has no far target, stays where the mesh carries it: then it keeps
-  // touching the wall. So, too, where the filter does not prove that it is carried to the inside.
+  // touching the wall. So, too, if the filter does not prove that it is carried to the inside.
   [[nodiscard]] bool rests(std::uint32_t i) const {
     if (is_far(i)) return false;
     const Vec3 x = b.start_of(i);
@@ -270,13 +270,13 @@ class FirstSimplexMoved {
     }
   }
 
-  // Four steps whose starts the mesh carries. Where these are not proved to lie inside, the others walk apart if their targets
-  // are far, and are deferred elsewhere.
+  // Four steps whose starts the mesh carries. If these are not proved to lie inside, the others walk apart if their
+  // targets are far, and are deferred elsewhere.
   void carry_four(const Index4& i, std::uint32_t count) {
     const Corners4 now = b.simplices_of(b.now, i);
     const unsigned left_behind = lanes_set(BatchDeterminants(now, b.places_of(i)).any_negative());
     const Vec3x4 q = b.targets_of(i);
-    const Vec3x4 x = b.starts_of(i, now);  // not a number where it is unknown
+    const Vec3x4 x = b.starts_of(i, now);  // not a number if it is unknown
     const unsigned inside =
         lanes_set(BatchDeterminants(now, x).all_positive() & ((x.x != q.x) | (x.y != q.y) | (x.z != q.z)));
     for (std::uint32_t l = 0; l < count; ++l) {

@@ -1,5 +1,5 @@
 // Where four steps meet walls, computed by the operations of tracking/contact_geometry.hpp and
-// tracking/place_in_simplex.hpp, to the same bits, where doubles prove all that they ask. Part of the batch's kernel.
+// tracking/place_in_simplex.hpp, to the same bits, if doubles prove all that they ask. Part of the batch's kernel.
 #pragma once
 
 #include <cstdint>
@@ -144,7 +144,7 @@ class WallImpact4 {
     point_ = without_tiny(p + way * fraction_);
   }
 
-  // Not so where a component is not a number.
+  // Not so if a component is not a number.
   static Mask4 in_range(const Vec3x4& x) {
     const Vec3x4 m = magnitude(x);
     return (m.x <= largest_magnitude) & (m.y <= largest_magnitude) & (m.z <= largest_magnitude);

@@ -6,9 +6,9 @@
 // prepare_caches (batch_remember)         places, vertices before the move     caches
 // FirstSimplexMoved (batch_first_simplex) targets, caches, all vertices        ends; caches; exits, far, apart
 // FirstSimplexAtRest                      targets, caches                      ends; exits, far, farther, rounds
-// FarWalks (batch_far_walks)              far; vertices on the way             ends; rounds, where a sign is not proved
+// FarWalks (batch_far_walks)              far; vertices on the way             ends; rounds, if a sign is not proved
 // SliceWalks (batch_slice_walks)          apart; vertices before and after     ends
-// WalksToCells (batch_cell_walks)         farther; vertices on the way         ends; rounds, where a sign is not proved
+// WalksToCells (batch_cell_walks)         farther; vertices on the way         ends; rounds, if a sign is not proved
 // leave_first_simplices (batch_walk)      exits                                ends; rounds
 // Rounds (batch_walk)                     rounds; vertices on the way          ends; caches of those that arrive
 // compute_impacts (batch_walls)           walls                                impacts of partial steps; caches

@@ -333,7 +333,7 @@ struct LineCrossing {
   return cross(cell, record, exit, number, wall);
 }
 
-// Finds the next simplex, and prefetches its new corner. Returns false where the shape has no table.
+// Finds the next simplex, and prefetches its new corner. Returns false if the shape has no table.
 [[gnu::always_inline]] inline bool find_corner(LinePlace& at, const CombinatorialMap& map, const Vec3* positions) {
   const ExitTable& table = map.view(Cell(at.cell), at.record).shape().exits();
   if (table.empty()) [[unlikely]]

@@ -3,7 +3,7 @@
 // Each step is the walk of tracking/walk.hpp, sign for sign. The batch takes one triangle of every walk at a time, so
 // that memory is prefetched. A step that ends in its first triangle computes less. Walls, and all that is out of the
 // ordinary, are deferred to Stepper (tracking/step.hpp), as in space (tracking/batch/batch.hpp). The states are the
-// same in the end. The counts are the same, too, except where rounding carries a particle out of its triangle, or to
+// same in the end. The counts are the same, too, except if rounding carries a particle out of its triangle, or to
 // its very target.
 #pragma once
 

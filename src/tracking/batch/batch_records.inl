@@ -58,7 +58,7 @@ inline WalkCursor first_cursor(std::uint32_t particle, const ParticleState& s, c
   return {particle, s.cell.value, s.simplex, no_facet, tests, exact, entered, record};
 }
 
-// The wall that a target is on, where the target is on these facets of its simplex.
+// The wall that a target is on, if the target is on these facets of its simplex.
 inline std::optional<SimplexFacet> find_touched_wall(const CombinatorialMap& map, const WalkCursor& cursor,
                                                      const VertexNumbers& corners, unsigned on) {
   Feature feature;

@@ -11,7 +11,7 @@ DARTCAST_BEGIN_KERNEL
 namespace dartcast::detail::DARTCAST_SIMD {
 namespace {
 
-// Caches that are not of the states before this step, and of this kind, are made: where the mesh has moved, of the places
+// Caches that are not of the states before this step, and of this kind, are made: if the mesh has moved, of the places
 // before.
 template <bool moved>
 inline void prepare_caches(Batch<moved>& b, const BatchScene& scene) {
@@ -27,7 +27,7 @@ inline void prepare_caches(Batch<moved>& b, const BatchScene& scene) {
   }
 }
 
-// Caches the ends of steps, four at a time. Where targets lie on facets, only exact coordinates help: the next target is
+// Caches the ends of steps, four at a time. If targets lie on facets, only exact coordinates help: the next target is
 // likely to lie on some, too.
 template <bool moved>
 inline void cache_arrivals(Batch<moved>& b) {

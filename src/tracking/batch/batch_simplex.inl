@@ -17,7 +17,7 @@ DARTCAST_BEGIN_KERNEL
 namespace dartcast::detail::DARTCAST_SIMD {
 namespace {
 
-// Sign of u . (v x w), evaluated as in src/predicates/predicates.cpp; 0 where the filter leaves it open.
+// Sign of u . (v x w), evaluated as in src/predicates/predicates.cpp; 0 if the filter leaves it open.
 inline int filtered_sign(const Vec3& u, const Vec3& v, const Vec3& w) {
   const auto largest = [](double a, double b, double c) { return std::max({std::abs(a), std::abs(b), std::abs(c)}); };
   const double x = largest(u.x, v.x, w.x);
@@ -94,7 +94,7 @@ struct BatchDeterminants {
   Vec3x4 relative[4];  // corners, to the points
   Vec3x4 extent;       // largest magnitudes of these
   Double4 value[4];
-  Double4 bound;  // infinite where the filter does not apply
+  Double4 bound;  // infinite if the filter does not apply
 
   BatchDeterminants() = default;
   [[gnu::always_inline]] BatchDeterminants(const Corners4& v, const Vec3x4& x)
@@ -143,7 +143,7 @@ struct BatchDeterminants {
   }
 
  private:
-  // Whether the values are exact (rounds_nothing() in dartcast/predicates.hpp), where the filter applies.
+  // Whether the values are exact (rounds_nothing() in dartcast/predicates.hpp), if the filter applies.
   [[nodiscard]] Mask4 are_exact(const Corners4& v, const Vec3x4& x) const {
     const Vec3x4 unit = extent * splat(0x1p+37);
     const Vec3x4 m = magnitude(x);

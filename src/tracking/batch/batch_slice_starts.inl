@@ -102,7 +102,7 @@ class Splitting {
     const Corners4 now = b.simplices_of(b.now, i);
     const Vec3x4 here = b.places_of(i);
     const Vec3x4 q = b.targets_of(i);
-    // Unknown where the coordinates are not known, or the simplex is not proved to be positive.
+    // Unknown if the coordinates are not known, or the simplex is not proved to be positive.
     const Mask4 known = (w[0] == w[0]) & BatchDeterminants(now, now.corner[0]).proves_positive();
     const Double4 root_of_slices = SplittingRule4(before, now).slices_for(q - combined(w, now), options_.tolerance);
     Double4 slices{};

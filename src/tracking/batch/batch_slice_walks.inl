@@ -1,5 +1,5 @@
 // Walks apart (batch_slice_starts.inl), along their lines (batch_far_walks.inl), among vertices where they are at the end of
-// the first slice. Stepper takes the other slices, and the whole step where anything is undecided. Part of the batch's
+// the first slice. Stepper takes the other slices, and the whole step if anything is undecided. Part of the batch's
 // kernel (tracking/batch/batch_kernel.inl).
 #pragma once
 

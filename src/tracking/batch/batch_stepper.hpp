@@ -31,7 +31,7 @@ struct BatchParticles {
 /// Steps of consecutive particles.
 struct ChunkSteps {
   StepReport report;
-  /// One at each of the report's contacts; or none, where these are not to be answered.
+  /// One at each of the report's contacts; or none, if these are not to be answered.
   std::vector<StepState> waiting;
 };
 
@@ -52,7 +52,7 @@ class PartTraffic {
 
   [[nodiscard]] virtual const PartCells& cells() const = 0;
   /// Sends steps away, each to the rank Traveller::to, and returns those that come here, in an order that depends on the
-  /// ranks alone. Where no rank has sent any, `over` becomes true. The data that users keep of a particle go along:
+  /// ranks alone. If no rank has sent any, `over` becomes true. The data that users keep of a particle go along:
   /// StepState::particle is its index here. Those that come get the next indices, in their order. Collective.
   virtual std::vector<Traveller> exchange(std::vector<Traveller> leaving, bool& over) = 0;
 };

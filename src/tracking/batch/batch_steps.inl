@@ -108,7 +108,7 @@ struct Batch {
     walls.add({cursor.particle, static_cast<StepStatus>(partial.size()), walk.wall_facet, corners});
     return defer_at_wall(cursor, walk);
   }
-  // At a wall that the target is on; it lies on these facets of the simplex. Returns true where there is no such wall.
+  // At a wall that the target is on; it lies on these facets of the simplex. Returns true if there is no such wall.
   bool is_off_walls(const WalkCursor& cursor, const VertexNumbers& corners, unsigned on) {
     const auto wall = find_touched_wall(map, cursor, corners, on);
     return !wall || end_on_wall(cursor, on, *wall);
@@ -130,7 +130,7 @@ struct Batch {
   Counters& counters;
   BatchList<AtWall> walls;     // where steps have ended at walls that their targets are beyond
   BatchList<Arrival> arrived;  // steps whose ends are to be cached
-  // Where the mesh has moved, by particle:
+  // If the mesh has moved, by particle:
   std::array<SimplexCache4::Table<double>, max_batch / 4> old_determinants;  // in its simplex before the move
   std::array<bool, max_batch> left_behind;  // as Counters::updated_by_deformation means it
 
@@ -162,7 +162,7 @@ struct Batch {
 struct WalkLists {
   BatchList<ExitCandidate> exits;  // proved to leave their first simplex, to targets near by
   BatchList<WalkStart> far;        // to targets some simplices away
-  BatchList<WalkStart> farther;    // some cells away, where cells are known to be positive
+  BatchList<WalkStart> farther;    // some cells away, if cells are known to be positive
   BatchList<SliceWalk> apart;      // far ones in the first of several slices, or from walls
   BatchList<WalkCursor> rounds;    // in any simplex
 };

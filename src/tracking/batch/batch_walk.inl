@@ -24,7 +24,7 @@ namespace {
   return 4U * at.index + at.place;
 }
 
-// As leaves_before() in tracking/walk.hpp, where the filter does not decide.
+// As leaves_before() in tracking/walk.hpp, if the filter does not decide.
 template <bool moved>
 [[gnu::noinline]] bool passes_before(const Batch<moved>& b, std::uint32_t i, const Vec3& p, const Vec3& q,
                                      const Vec3& s, const Vec3& t) {
@@ -58,7 +58,7 @@ inline unsigned first_exit(const Batch<moved>& b, WalkCursor& cursor, const Vert
   return facet;
 }
 
-// Into the cell beyond a face. Returns false where that is a wall.
+// Into the cell beyond a face. Returns false if that is a wall.
 template <bool moved>
 inline bool pass_face(Batch<moved>& b, WalkCursor& cursor, const VertexNumbers& corners, unsigned facet,
                       Across across) {

@@ -1,4 +1,4 @@
-// Steps that have ended at walls: where they meet them, four at a time, where doubles prove it. Else Stepper computes it.
+// Steps that have ended at walls: where they meet them, four at a time, if doubles prove it. Else Stepper computes it.
 // Part of the batch's kernel (tracking/batch/batch_kernel.inl).
 #pragma once
 

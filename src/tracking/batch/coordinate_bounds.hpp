@@ -27,7 +27,7 @@ namespace dartcast::detail {
 inline constexpr double coordinate_margin = 0x1p-12;
 inline constexpr double max_for_sign = 2.0;
 /// A coordinate below minus this: the target is some simplices away, and the walk goes along its line. Determinants say
-/// so. Where a kept coordinate is above minus the second number, they are known to deny it: no count of tests depends on
+/// so. If a kept coordinate is above minus the second number, they are known to deny it: no count of tests depends on
 /// what is kept.
 inline constexpr double far_coordinate = 1.5;
 inline constexpr double surely_near = far_coordinate - 0x1p-10;

@@ -63,7 +63,7 @@ class ParticleCache {
 
   std::vector<VertexNumbers> vertices_;
   CacheKind kind_ = CacheKind::none;
-  SimplexCache simplices_;      // of this kind; empty where there is none
+  SimplexCache simplices_;      // of this kind; empty if there is none
   bool walls_changed_ = false;  // since the last step
 };
 

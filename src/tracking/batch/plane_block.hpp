@@ -22,7 +22,7 @@ struct PlaneBlock {
   std::uint32_t inside = 0;    ///< of the others, those that touch no wall and whose targets are proved to lie inside
   std::uint32_t decided = 0;   ///< the triangle is proved positive, and the target's side of each facet is proved
   std::array<std::uint8_t, plane_block> behind;  ///< decided: a bit for each facet that the target is behind
-  // Where vertices move, of steps that are in none of the first two sets:
+  // If vertices move, of steps that are in none of the first two sets:
   std::uint32_t carried_inside =
       0;  ///< the vertices carry the start to a place that is proved inside and is not the target
   std::uint32_t left_behind = 0;                           ///< as Counters::updated_by_deformation means it

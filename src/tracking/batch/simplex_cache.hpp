@@ -60,7 +60,7 @@ struct alignas(64) SimplexCache4 {
 };
 
 /// Flags of a particle that has barycentric coordinates. Bit 4: they are exact, so that zeros of a target are proved,
-/// too. Where it is set, bits 0 to 3 are the facets of the simplex that the particle lies on, and it lies on no wall.
+/// too. If it is set, bits 0 to 3 are the facets of the simplex that the particle lies on, and it lies on no wall.
 using CacheFlags = std::uint8_t;
 inline constexpr CacheFlags exact_flag = 16;
 
@@ -97,7 +97,7 @@ class SimplexCache {
     resize(size_ + 1);
     put(size_ - 1, entry, flags);
   }
-  /// Those of the particles from `begin` on; empty where none are kept. Precondition: begin is a multiple of four.
+  /// Those of the particles from `begin` on; empty if none are kept. Precondition: begin is a multiple of four.
   [[nodiscard]] SimplexCacheSpan from(std::size_t begin) {
     if (empty()) return {};
     return {std::span(fours_).subspan(begin / 4), std::span(flags_).subspan(begin)};

@@ -50,7 +50,7 @@ class ByteReader;
 class ByteWriter;
 
 /// A traveller as bytes of this machine's kind. The numbers of its particle, `to`, `met` and `contact` do not travel;
-/// `weights` do where the particle is held: else a step makes them anew.
+/// `weights` do if the particle is held: else a step makes them anew.
 void pack(const Traveller& traveller, ByteWriter& out);
 /// `traveller`: a new one.
 void unpack(ByteReader& in, Traveller& traveller);

@@ -1,4 +1,4 @@
-// The step of one particle in a part of an environment: it leaves where it needs cells that another rank owns. Not installed.
+// One particle's step in a part of an environment: it leaves if it needs cells that another rank owns. Not installed.
 #pragma once
 
 #include "tracking/batch/traveller.hpp"
