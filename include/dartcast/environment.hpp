@@ -294,9 +294,9 @@ class Environment {
                                   const ContactCallback& respond = {}, const StepOptions& options = {}) const;
 
   /// Adds all later steps by advance() to a tally of complex(); null ends this. It must outlive its use, and follow each
-  /// edit: advance() throws InvalidArgument if it has no place for a cell. `numbers`: how often each particle's step is added,
-  /// below 2^32, read in each advance(); empty: once. advance() throws for another number of particles. advance_in_rounds() with a response refuses to
-  /// step then. States and reports stay the same bits. If a response
+  /// edit: advance() throws InvalidArgument if it has no place for a cell. `numbers`: how often to add each particle's
+  /// step, below 2^32; empty: once. They are read in each advance(), which throws if there are more or fewer.
+  /// advance_in_rounds() with a response refuses to step then. States and reports stay the same bits. If a response
   /// throws, the tally is as before. Cost: a second walk for each step that leaves its simplex; and if a response may
   /// throw, a copy of the tally.
   void set_tally(CellTally* tally, std::span<const std::uint64_t> numbers = {});

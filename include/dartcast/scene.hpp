@@ -289,8 +289,8 @@ struct MotionScene {
   /// Arrays whose values particles take at their places, as numbers of user data: one for each component, named as
   /// component_name(). They are where the field's arrays are, in its files or in the mesh, at the same times.
   std::vector<std::string> sample = {};
-  /// Numbers of user data that grow by a sampled value times the time, along the way of each particle: the name of the new
-  /// number, and that of the component. The value is taken to be linear over each step.
+  /// Numbers of user data that grow by a sampled value times the time, along the way of each particle. The key is the name
+  /// of the new number, the value that of the component. Values are taken to be linear over each step.
   std::map<std::string, std::string> integrate = {};
   /// load_scene_files() makes these of `sample`, if the field has files; then `sample` is empty.
   std::vector<ArraySamples> sampled = {};

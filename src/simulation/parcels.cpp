@@ -43,8 +43,8 @@ Parcel Parcels::parcel(const ParticleSet& set, std::size_t i) const {
   return {count, static_cast<double>(count) * mass};
 }
 
-// A contact's displacement is the way from the particle's last contact, or from the start of the segment, to the end
-// that was planned for the segment.
+// A contact's displacement leads to the end that was planned for the segment. It begins at the particle's last contact,
+// or else where the segment does.
 std::vector<Impact> impacts_of(const SimulationStep& step, const SimulationOptions& options) {
   const ContactList& list = step.report.contacts;
   std::vector<Impact> impacts;
