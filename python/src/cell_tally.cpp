@@ -100,10 +100,10 @@ void bind(py::module_& m) {
       about("CellTally::take_back"));
   c.def(
       "deposit",
-      [](TallyHandle& t, Cell cell) {
+      [](TallyHandle& t, Cell cell, std::uint64_t number) {
         const Use in_use = t.use();
         require_cell(t, cell);
-        t.tally.deposit(cell);
+        t.tally.deposit(cell, number);
       },
       about("CellTally::deposit"));
   c.def(

@@ -57,6 +57,8 @@ void bind_callback(py::module_& m) {
         return std::make_shared<LibraryAnswers>(responses_of(responses, nullptr), velocities, statuses, dt,
                                                 acceleration);
       },
+      py::arg("responses"), py::arg("velocities"), py::arg("statuses"), py::arg("dt"),
+      py::arg("acceleration") = Acceleration(),
       about(
           "respond_with",
           "velocities: float64 (n, 3), written in place. statuses: uint8 (n,) of ParticleStatus, written in place; or "
