@@ -24,7 +24,7 @@ BY_HAND = set("""
     AddResult BodiesCheckpoint CatheterCheckpoint Cell CellFace CellHandle ContactList Dart DataArray Drops FaceHits
     HeldParticle Id ImplicitSimplex LawParticles LawResult LawSamples LeftParticle MeshData MeshFile MeshPart OrphanedParticle Patch PathPoint
     PlaneCrossing PlanePassage RayCells RayHit ReplayResult SimplexId SolidAudit SolidCheckpoint SolidContact
-    SolidMesh SolidPlacement SolidStep SphereOverlap SphereReport Stars Statistics SteinerPoints StepReplay
+    SolidMeeting SolidMesh SolidPlacement SolidStep SphereOverlap SphereReport Stars Statistics SteinerPoints StepReplay
     StepReport StoppedParticle Subdivided Subdivision SurfaceReport SurfaceTrace Threads TouchedFaces Trace
     Transaction UpdateReport Vec3 VelocityGradient
     """.split())
@@ -50,6 +50,8 @@ ROWS = {
     "SphereOverlap": f"particle {FACE} depth left point normal",
     "SolidContact": f"solid kind count wall_kind vertices weights {FACE} triangle dart:dart.number patch time_of_impact gap "
                     "point wall_point normal displacement wall_displacement",
+    "SolidMeeting": "solid other kind count vertices other_vertices weights other_weights time_of_impact gap point "
+                    "other_point normal",
     "FaceHits": f"{FACE} patch hits mass energy angles",
     "PlaneCrossing": "plane particle forward share point",
     "PlanePassage": "plane:crossing.plane particle:crossing.particle forward:crossing.forward share:crossing.share "
@@ -62,7 +64,7 @@ ROWS = {
                       "normal sides displacement unused",
 }
 # Structs that Python cannot make or change, and their members that are structured arrays.
-READ_ONLY = {"CatheterCheckpoint": "", "MeshPart": "", "SolidAudit": "", "SolidCheckpoint": "", "SolidStep": "contacts",
+READ_ONLY = {"CatheterCheckpoint": "", "MeshPart": "", "SolidAudit": "", "SolidCheckpoint": "", "SolidStep": "contacts meetings",
              "SphereReport": "overlaps", "Statistics": "passages path_points", "UpdateReport": "orphaned"}
 # Functions that Python calls as they are, and methods and properties of records.
 FUNCTIONS = """
@@ -244,7 +246,8 @@ def arguments(name: read_headers.Name, types: set[str]) -> list[tuple[str, str]]
         declared, _, value = part.partition(" = ")
         kind, _, last = declared.rpartition(" ")
         kind = re.sub(r"^const | &$", "", kind)
-        castable = kind in types or re.fullmatch(r"bool|double|unsigned|std :: (size_t|uint\d+_t|string)", kind)
+        kind = re.sub(r"std :: span < const (std :: uint\d+_t) >", r"std::vector<\1>", kind)
+        castable = kind in types or re.fullmatch(r"bool|double|unsigned|std :: (size_t|uint\d+_t|string)|std::vector<.*>", kind)
         code = f"[] {{ return pybind11::cast({kind}({value.strip('{}')})); }}" if value and castable else ""
         found.append((last + "_" if keyword.iskeyword(last) else last, code))
     return found

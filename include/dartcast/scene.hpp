@@ -230,14 +230,18 @@ struct CatheterScene {
   double camera = 0.0;      ///< spacing of the camera's places along it; 0: none
 };
 
-/// A rigid tool: a surface or a line, where it is put, and how it moves. No edge and no triangle of it crosses a wall: it
-/// stops there, and walls that move stop at it.
+/// A rigid tool: a surface or a line, where it is put, and how it moves. No edge and no triangle of it crosses a wall or
+/// another tool that it meets: it stops there, and walls that move stop at it. Each point of one that turns is on its arc,
+/// which is free: it keeps 2^-10 of its longest side off walls and other tools, or the distance that it has if that is
+/// smaller.
 struct SolidScene {
   /// The motion from the end of the previous move.
   struct Move {
     double until = 0.0;  ///< s
     Vec3 velocity;       ///< m / s
-    Vec3 turn;           ///< rad / s: axis times angular velocity, about the pivot; any angle in a step
+    /// rad / s: axis times angular velocity, about the pivot; any angle in a step. Cost: a step for each slice. In a step
+    /// there are sqrt(arm / (2^-8 longest side)) slices a rad, `arm` being the largest distance of its points from the axis.
+    Vec3 turn;
   };
 
   std::string name;  ///< of its files
@@ -250,6 +254,8 @@ struct SolidScene {
   std::vector<Move> moves;  ///< by time; afterwards it is held
   /// Whether it makes up for motion that a wall has stopped, up to a turn of 3.125 rad. Else that motion is lost.
   bool catch_up = false;
+  /// The names of the tools that it meets; none: all. Two tools meet if neither leaves the other out.
+  std::optional<std::vector<std::string>> meets = {};
 };
 
 /// A field: arrays of three components in the scene's mesh or in files, or samples in memory.

@@ -53,6 +53,7 @@ enum class SolidRefusal : std::uint8_t {
   meets_wall,         ///< an edge or a triangle touches or crosses a wall
   encloses_wall,      ///< a wall is inside the closed solid
   cell_not_positive,  ///< a cell that an edge or a triangle reaches is flat or inverted
+  meets_solid,        ///< it touches or crosses another solid, or one is inside the other
 };
 
 /// The answer to a request to add one solid; also the state of a solid after an edit.
@@ -62,6 +63,7 @@ struct SolidPlacement {
   /// If it is refused: the vertices (numbers in the solid) of the place, the first `count` of these.
   std::array<std::uint32_t, 3> vertices{};
   std::uint8_t count = 0;
+  std::uint32_t other = 0xffffffffU;  ///< the solid that it meets; none (0xffffffff) without one
 };
 
 /// The parts of a solid and a wall that meet first.
@@ -92,6 +94,24 @@ struct SolidContact {
   Vec3 wall_displacement;       ///< of the place on the wall, to the caller's positions
 };
 
+/// A place where two solids meet in a step.
+struct SolidMeeting {
+  std::uint32_t solid = 0;  ///< the one that was added later
+  std::uint32_t other = 0;
+  SolidContactKind kind =
+      SolidContactKind::vertex_face;              ///< the part of `solid` first; the other's stands for the wall's
+  std::uint8_t count = 0;                         ///< of `vertices`: 1, 2 or 3, by the kind; the other has 4 - count
+  std::array<std::uint32_t, 3> vertices{};        ///< numbers in the solid
+  std::array<std::uint32_t, 3> other_vertices{};  ///< numbers in the other
+  std::array<double, 3> weights{};                ///< of the vertices at the place; they sum to 1
+  std::array<double, 3> other_weights{};
+  double time_of_impact = 0.0;  ///< on the way towards the targets, in [0, 1]
+  Vec3 point;                   ///< of the solid, where the place is at the end of the step
+  Vec3 other_point;
+  Vec3 normal;       ///< unit: from the other towards the solid
+  double gap = 0.0;  ///< (point - other_point) . normal
+};
+
 /// How a step treats contacts.
 struct SolidStepOptions {
   /// Rounds of corrections at most. 0: a solid whose way is not free stops before its first contact, in the shape that it
@@ -106,10 +126,12 @@ struct SolidStepOptions {
 /// The effects of a step.
 struct SolidStep {
   std::vector<SolidContact> contacts;  ///< those that changed the motion; by solid, then by time
-  std::vector<double> made;            ///< for each solid: the share of the way to its (corrected) targets that it went
-  double walls_made = 1.0;             ///< of move_with(): the share of the motion that the walls made
-  std::uint32_t corrected = 0;         ///< solids whose targets contacts changed
-  std::uint32_t cut = 0;               ///< solids that went less than their way
+  std::vector<SolidMeeting>
+      meetings;                 ///< of solids that stopped at each other: each pair once; by solid, then by other
+  std::vector<double> made;     ///< for each solid: the share of the way to its (corrected) targets that it went
+  double walls_made = 1.0;      ///< of move_with(): the share of the motion that the walls made
+  std::uint32_t corrected = 0;  ///< solids whose targets contacts changed
+  std::uint32_t cut = 0;        ///< solids that went less than their way
   /// Solids that stayed because a cell that they reach is flat or inverted, or because they are stuck().
   std::vector<std::uint32_t> held;
   std::uint32_t rounds = 0;  ///< of corrections made, at most, by any solid
@@ -126,7 +148,7 @@ struct SolidCheckpoint {
 /// The outcome of an audit of solids.
 struct SolidAudit {
   std::uint64_t checked = 0;  ///< edges, triangles and single points, but for those of stuck solids
-  std::uint64_t failed = 0;   ///< those of them that meet a wall
+  std::uint64_t failed = 0;   ///< those of them that meet a wall, or a solid that theirs meets
   std::string first;          ///< the first that failed; empty: none failed
 };
 
@@ -135,7 +157,9 @@ struct SolidAudit {
 /// Guarantees. After every step no edge and no triangle of a solid meets a wall. The straight motion between the
 /// positions before and after the step, as stored, is free of contact with the walls, by exact decisions. So what is
 /// outside a closed solid stays outside. A step ends after at most `rounds` corrections and 45 cuts. Results are the same
-/// bits for any number of threads. Not guaranteed: solids may pass through each other, and through themselves.
+/// bits for any number of threads. Solids that meet each other never cross, by the same decisions. One that goes towards
+/// another stops before it, as it stops before a wall. Not guaranteed: a solid may pass through itself, and through those
+/// that it does not meet. While a solid is stuck(), cells may carry it through others.
 class SolidSet {
  public:
   /// `environment` outlives the set. Its owner may move it only by move_with() if the set is not empty. Throws
@@ -145,10 +169,12 @@ class SolidSet {
   SolidSet(const SolidSet&) = delete;
   SolidSet& operator=(const SolidSet&) = delete;
 
-  /// Adds a solid if it touches no wall and encloses none; else the answer says why, and nothing is added. Throws as
-  /// check(), and InvalidArgument if the set missed a move or an edit. Cost: as a step, and a search for its points
-  /// (Environment::locate()).
-  SolidPlacement add(const SolidMesh& mesh);
+  /// Adds a solid that meets these others of the set. They must not touch it, and none of two may be inside the other. If
+  /// it also touches no wall and encloses none, it is added; else the answer says why, and nothing is added. Throws as
+  /// check(), and InvalidArgument if there is no such other, or the set missed a move or an edit. Cost: as a step, and a
+  /// search for its points (Environment::locate()). A step looks at all pairs of solids that meet and whose boxes
+  /// overlap on their ways: n log n in their elements.
+  SolidPlacement add(const SolidMesh& mesh, std::span<const std::uint32_t> meets = {});
 
   /// Removes a solid. Those after it move up. Throws InvalidArgument if there is no such solid.
   void remove(std::uint32_t solid);
@@ -212,7 +238,7 @@ struct SolidSummary {
   std::string name;
   std::size_t vertices = 0;
   Vec3 pivot;                  ///< now
-  std::uint64_t contacts = 0;  ///< that changed its motion
+  std::uint64_t contacts = 0;  ///< with walls that changed its motion, and with other solids
   std::uint64_t stopped = 0;   ///< steps that it did not make in full
   bool stuck = false;          ///< an edit left it no free place (SolidSet::stuck())
 };

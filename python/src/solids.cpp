@@ -71,6 +71,10 @@ void bind_records(py::module_& m) {
           [](const SolidPlacement& p) { return p.solid == 0xffffffffU ? std::nullopt : std::optional(p.solid); },
           "Its index in the set; None where it is not added.")
       .def_property_readonly(
+          "other",
+          [](const SolidPlacement& p) { return p.other == 0xffffffffU ? std::nullopt : std::optional(p.other); },
+          "The solid that it meets; None where it meets none.")
+      .def_property_readonly(
           "vertices",
           [](const SolidPlacement& p) {
             return std::vector<std::uint32_t>(p.vertices.begin(), p.vertices.begin() + p.count);

@@ -60,3 +60,18 @@ def test_a_surface_keeps_its_triangles() -> None:
     mesh = dc.solid_of_surface(dc.generate_barrel(staves=8, rows=4, rings=2))
     assert mesh.triangles.dtype == np.uint32 and mesh.triangles.shape[1] == 3
     assert mesh.triangles.max() == len(mesh.points) - 1 and mesh.edges.shape == (0, 2)
+
+
+def test_solids_that_meet_stop_at_each_other() -> None:
+    solids = dc.SolidSet(with_obstacle())
+    first = solids.add(dc.solid_of_polyline(np.array([[0.5, 0.5, 0.5], [0.5, 1.5, 0.5]])))
+    line = np.array([[0.8, 1.0, 0.2], [0.8, 1.0, 0.8]])
+    assert solids.add(dc.solid_of_polyline(line), [first.solid]).other is None
+    refused = solids.add(dc.solid_of_polyline(line - [0.3, 0.0, 0.0]), [0, 1])
+    assert refused.refusal == dc.records.SolidRefusal.MEETS_SOLID and refused.other == 0 and len(refused.vertices) == 2
+    step = solids.advance(solids.positions + np.array([[0.6, 0.0, 0.0]] * 2 + [[0.0, 0.0, 0.0]] * 2))
+    assert step.made[0] == pytest.approx(15 / 16 * 0.5, abs=1e-5) and step.made[1] == 1.0
+    meeting = step.meetings[0]
+    assert (meeting["solid"], meeting["other"], meeting["count"]) == (1, 0, 2)
+    assert meeting["time_of_impact"] == pytest.approx(0.5, abs=1e-5) and meeting["normal"][0] == pytest.approx(1.0)
+    assert meeting["gap"] == pytest.approx(0.3 / 16, abs=1e-5) and solids.audit().failed == 0

@@ -101,6 +101,10 @@ void SolidsRecording::add_solids(const Simulation& simulation) {
   const std::vector<SolidSummary> now = simulation.solid_summaries();
   std::vector<std::uint64_t> contacts(now.size());
   for (const SolidContact& c : last.contacts) ++contacts[c.solid];
+  for (const SolidMeeting& m : last.meetings) {
+    ++contacts[m.solid];
+    ++contacts[m.other];
+  }
   for (std::size_t i = 0; i < now.size(); ++i) {
     const Vec3& p = now[i].pivot;
     solids_.print("{},{},{},{},{},{},{},{},{}\n", simulation.steps(), simulation.time(), now[i].name, last.made[i],
@@ -109,10 +113,11 @@ void SolidsRecording::add_solids(const Simulation& simulation) {
   solids_.send_many(writing_);
 }
 
-// Those of tools, then those of the surfaces of bodies, then those of catheters.
+// Those of tools with walls and with each other, then those of the surfaces of bodies, then those of catheters.
 void SolidsRecording::add_solid_contacts(const Simulation& simulation) {
   for (const SolidContact& c : simulation.solids_step().contacts)
     add_solid_contact(simulation, view_of(simulation).solids.name(c.solid), c);
+  for (const SolidMeeting& m : simulation.solids_step().meetings) add_meeting(simulation, m);
   const BodiesComponent& bodies = view_of(simulation).bodies;
   if (bodies.bodies() && bodies.last_step().gone.empty()) {
     for (const SolidContact& c : bodies.last_step().edges) add_solid_contact(simulation, bodies.name(c.solid), c);
@@ -131,6 +136,15 @@ void SolidsRecording::add_solid_contact(const Simulation& simulation, const std:
                         map.patch_names()[c.patch.value], map.source(c.face.cell), c.time_of_impact, c.gap, c.point.x,
                         c.point.y, c.point.z, c.wall_point.x, c.wall_point.y, c.wall_point.z, c.normal.x, c.normal.y,
                         c.normal.z);
+}
+
+// In the place of the wall is the other tool, without a cell.
+void SolidsRecording::add_meeting(const Simulation& simulation, const SolidMeeting& m) {
+  const SolidsComponent& tools = view_of(simulation).solids;
+  solid_contacts_.print("{},{},{},{},solid,{},,{},{},{},{},{},{},{},{},{},{},{}\n", simulation.steps(),
+                        simulation.time(), tools.name(m.solid), name_of(m.kind), tools.name(m.other), m.time_of_impact,
+                        m.gap, m.point.x, m.point.y, m.point.z, m.other_point.x, m.other_point.y, m.other_point.z,
+                        m.normal.x, m.normal.y, m.normal.z);
 }
 
 void SolidsRecording::add_frame(const Simulation& simulation, std::span<const RecordingFrame> frames) {

@@ -32,6 +32,7 @@ class SolidsRecording final : public Recorder {
   void add_solids(const Simulation& simulation);
   void add_solid_contacts(const Simulation& simulation);
   void add_solid_contact(const Simulation& simulation, const std::string& name, const SolidContact& c);
+  void add_meeting(const Simulation& simulation, const SolidMeeting& m);
   void write_body(const Simulation& simulation, std::size_t body, std::uint64_t step) const;
   void write_catheter(const Simulation& simulation, std::size_t i, std::uint64_t step) const;
   void write_solid(const Simulation& simulation, std::size_t i, std::uint64_t step) const;

@@ -155,6 +155,8 @@ SolidScene read_solid(TomlTable& t, const std::filesystem::path& folder, std::si
   scene.pivot = scene.at;
   t.get("pivot", scene.pivot);
   t.get("catch_up", scene.catch_up);
+  std::vector<std::string> meets;
+  if (t.get("meets", meets)) scene.meets = std::move(meets);
   for (TomlTable& move : t.tables("moves"))
     scene.moves.push_back(solid_move(move, scene.moves.empty() ? 0.0 : scene.moves.back().until));
   t.finish();

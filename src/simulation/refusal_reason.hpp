@@ -12,6 +12,7 @@ constexpr const char* reason(SolidRefusal why) {
     case SolidRefusal::meets_wall: return "meets a wall";
     case SolidRefusal::encloses_wall: return "encloses a wall";
     case SolidRefusal::cell_not_positive: return "is in a cell that is flat or inverted";
+    case SolidRefusal::meets_solid: return "overlaps another solid";
     case SolidRefusal::none: break;
   }
   return "has room";

@@ -1,7 +1,6 @@
 // Rigid poses, which are a turn about the pivot and then a displacement, and the ways between them.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 
 #include "base/elementary.hpp"
@@ -54,13 +53,9 @@ struct RigidWay {
   }
 };
 
-/// How many equal slices a way needs. With them chords are at most `distance` off it at any time, for all points within
-/// `arm` of the axis. Preconditions: angle, arm, distance >= 0, and distance > 0 if arm is.
+/// How far a way of this angle is off its chord at any time, at most, for all points within `arm` of the axis.
 ///
-/// In a slice of angle a the acceleration of such a point is at most a^2 arm, if the slice takes the time 1. So a chord,
-/// which interpolates the way, is off by at most a^2 arm / 8.
-inline double slice_count(double angle, double arm, double distance) {
-  return arm > 0.0 ? std::max(1.0, std::ceil(angle * std::sqrt(arm / (8.0 * distance)))) : 1.0;
-}
+/// If it takes the time 1, the acceleration of such a point is at most angle^2 arm. A chord interpolates the way linearly.
+inline double bend_of(double angle, double arm) { return angle * angle * arm / 8.0; }
 
 }  // namespace dartcast

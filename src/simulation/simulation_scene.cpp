@@ -1,8 +1,11 @@
 // Makes a simulation from a scene: looks up what it names, then builds from that alone.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "dartcast/error.hpp"
 #include "simulation/balance.hpp"
@@ -39,6 +42,18 @@ void add_placed(Simulation& simulation, const ParticlesScene& group, const Place
   for (std::size_t i = 0; i < added.size(); ++i) check_place(*seeds, i, added[i].location.place);
 }
 
+// Throws InvalidArgument that names the solid if it meets one that is not there.
+void check_names_of_met(std::span<const SolidScene> solids) {
+  for (const SolidScene& solid : solids) {
+    for (const std::string& met : solid.meets.value_or(std::vector<std::string>{})) {
+      if (std::any_of(solids.begin(), solids.end(), [&](const SolidScene& s) { return s.name == met; })) continue;
+      throw InvalidArgument(fmt::format(
+          "solid \"{}\": no solid has the name \"{}\", which its meets has: give names of the scene's solids",
+          solid.name, met));
+    }
+  }
+}
+
 }  // namespace
 
 // All but the particles.
@@ -54,6 +69,7 @@ void Simulation::build(ResolvedScene& scene) {
   set_statistics(scene.statistics);
   for (const BodyScene& body : scene.bodies) add(body);
   for (const CatheterScene& catheter : scene.catheters) add(catheter);
+  check_names_of_met(scene.solids);
   for (const SolidScene& solid : scene.solids) add(solid);
   for (const ParticlesScene& group : scene.particles) {
     if (const auto* inlet = std::get_if<InletParticles>(&group.source))

@@ -2,9 +2,9 @@
 // vertices of the wanted poses are the targets of the set of solids. A tool that was stopped takes the pose at the share
 // of its way.
 //
-// A tool that turns goes on chords, from pose to pose. Its step is cut into slices, so that no point leaves its arc by more
-// than the tool's separation from walls. If it stops in a slice, the set tries poses of the slice until the chord to one
-// is free. So a tool is rigid at the end of each slice.
+// A tool that turns goes on chords, from pose to pose. Its step is cut into slices, so that no point leaves its chord by
+// more than half of the tool's separation from walls. The chords keep that separation, so the arcs are free. If it stops
+// in a slice, the set tries poses of the slice until the chord to one is free. So a tool is rigid in every state.
 #include "simulation/solids_component.hpp"
 
 #include <fmt/format.h>
@@ -37,7 +37,6 @@ SolidMesh shape_of(const SolidScene& scene) {
 // A tool that walls hold back by more than this angle, which is less than a half turn, loses the rest. So the shorter way
 // to its wanted pose goes the same way round as its moves.
 constexpr double max_lag = 3.125;
-constexpr double max_slices = 0x1p16;
 
 // The way of a step: from the pose to where a move takes the wanted one.
 RigidWay way_of(const RigidPose& pose, const RigidPose& wanted, const SolidScene& scene, double begin, double dt) {
@@ -76,12 +75,17 @@ void SolidsComponent::add_named(const SolidScene& scene) {
   tool.scene.shape = {};
   tool.mesh = shape_of(scene);
   if (!solids_) solids_.emplace(environment_);
-  const SolidPlacement placed = solids_->add(tool.mesh);
+  const SolidPlacement placed = solids_->add(tool.mesh, met_by(scene));
   if (placed.refusal != SolidRefusal::none) {
     const std::span<const std::uint32_t> vertices(placed.vertices.data(), placed.count);
     const Vec3& x = tool.mesh.points[vertices.front()];
-    throw Error(fmt::format("its part with the vertices {} at ({}, {}, {}) {}; move or turn it",
-                            fmt::join(vertices, ", "), x.x, x.y, x.z, reason(placed.refusal)));
+    const bool overlaps = placed.refusal == SolidRefusal::meets_solid;
+    const std::string why =
+        overlaps ? fmt::format("overlaps the solid \"{}\"; move or turn one of them, or leave it out of meets",
+                               name(placed.other))
+                 : fmt::format("{}; move or turn it", reason(placed.refusal));
+    throw Error(
+        fmt::format("its part with the vertices {} at ({}, {}, {}) {}", fmt::join(vertices, ", "), x.x, x.y, x.z, why));
   }
   tool.separation = JointMoves::separation(*solids_, placed.solid);
   if (tool.separation == 0.0) tool.separation = JointMoves::default_separation * arm_of(tool.mesh, scene.pivot);
@@ -95,11 +99,24 @@ void SolidsComponent::add_named(const SolidScene& scene) {
   tools_.push_back(std::move(tool));
 }
 
+// The tools so far that it meets.
+std::vector<std::uint32_t> SolidsComponent::met_by(const SolidScene& scene) const {
+  const auto leaves_out = [](const SolidScene& one, const SolidScene& other) {
+    return one.meets && std::find(one.meets->begin(), one.meets->end(), other.name) == one.meets->end();
+  };
+  std::vector<std::uint32_t> met;
+  for (std::uint32_t i = 0; i < tools_.size(); ++i) {
+    if (!leaves_out(scene, tools_[i].scene) && !leaves_out(tools_[i].scene, scene)) met.push_back(i);
+  }
+  return met;
+}
+
 void SolidsComponent::check_turns(const Tool& tool) const {
   const double arm = arm_of(tool.mesh, tool.scene.pivot);
   for (std::size_t i = 0; i < tool.scene.moves.size(); ++i) {
     const double angle = norm(tool.scene.moves[i].turn) * dt_;
-    const double slices = slice_count(angle, arm, tool.separation);
+    if (angle == 0.0 || arm == 0.0) continue;
+    const double slices = slices_of(bend_of(angle, arm), tool.separation);
     if (!(slices <= max_slices))
       throw InvalidArgument(fmt::format(
           "its move {} turns it by {} rad in a step, which takes {} slices; {} is the limit: make dt smaller, "
@@ -111,32 +128,45 @@ void SolidsComponent::check_turns(const Tool& tool) const {
 // Gives each tool its way of the step, and the set the way of all.
 SolidWay SolidsComponent::way(double begin) {
   SolidWay all;
-  double slices = 1.0;
-  bool turns = false;
   for (Tool& tool : tools_) {
     tool.way = way_of(tool.pose, tool.wanted, tool.scene, begin, dt_);
     tool.wanted = tool.way.to;
     tool.put(tool.wanted, std::back_inserter(all.targets));
-    const double angle = norm(tool.way.turn);
-    if (angle == 0.0) continue;
-    turns = true;
-    double arm = 0.0;
-    for (const Vec3& x : tool.mesh.points)
-      arm = std::max(arm, norm(cross(tool.way.turn, rotated(tool.pose.rotation, x - tool.scene.pivot))) / angle);
-    slices = std::max(slices, slice_count(angle, arm, tool.separation));
   }
-  if (!turns) return all;  // straight
-  all.slices = static_cast<unsigned>(slices);
+  if (std::none_of(tools_.begin(), tools_.end(), turns)) return all;
+  for (const Tool& tool : tools_) all.arcs.push_back(arc_of(tool));
   all.place = [this](std::uint32_t solid, double share, std::span<Vec3> vertices) {
     tools_[solid].put(tools_[solid].way.at(share), vertices.begin());
   };
   return all;
 }
 
+// One that turns at any time keeps its separation in all steps: so it has the room when it turns.
+bool SolidsComponent::turns(const Tool& tool) {
+  const auto& moves = tool.scene.moves;
+  return tool.separation > 0.0 &&
+         std::any_of(moves.begin(), moves.end(), [](const SolidScene::Move& m) { return m.turn != Vec3{}; });
+}
+
+SolidArc SolidsComponent::arc_of(const Tool& tool) {
+  if (!turns(tool)) return {};
+  const double angle = norm(tool.way.turn);
+  double arm = 0.0;
+  for (const Vec3& x : tool.mesh.points) {
+    if (angle == 0.0) break;
+    arm = std::max(arm, norm(cross(tool.way.turn, rotated(tool.pose.rotation, x - tool.scene.pivot))) / angle);
+  }
+  return {bend_of(angle, arm), tool.separation};
+}
+
 // The lag of a tool that makes up for it is limited.
 void SolidsComponent::follow(const SolidStep& step) {
   last_ = step;
   for (const SolidContact& c : last_.contacts) ++tools_[c.solid].contacts;
+  for (const SolidMeeting& m : last_.meetings) {
+    ++tools_[m.solid].contacts;
+    ++tools_[m.other].contacts;
+  }
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     Tool& tool = tools_[i];
     const double made = last_.made[i];

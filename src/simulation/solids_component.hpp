@@ -54,7 +54,7 @@ class SolidsComponent final : public SimulationComponent {
     RigidPose pose;           // where it is
     RigidPose wanted;         // where it should be
     RigidWay way;             // of the step
-    double separation = 0.0;  // chords stay as near to the arcs
+    double separation = 0.0;  // kept from walls if it turns
     std::uint64_t contacts = 0;
     std::uint64_t stopped = 0;
 
@@ -67,8 +67,11 @@ class SolidsComponent final : public SimulationComponent {
   };
 
   void add_named(const SolidScene& scene);
+  [[nodiscard]] std::vector<std::uint32_t> met_by(const SolidScene& scene) const;
   void check_turns(const Tool& tool) const;
   [[nodiscard]] SolidWay way(double begin);
+  [[nodiscard]] static bool turns(const Tool& tool);
+  [[nodiscard]] static SolidArc arc_of(const Tool& tool);
   void follow(const SolidStep& step);
 
   [[nodiscard]] bool walls_were_stopped() const { return walls_before_ < 1.0 || walls_now_ < 1.0; }

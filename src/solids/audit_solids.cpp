@@ -64,8 +64,6 @@ bool meet(const AuditPoint& a, const AuditPoint& b, const AuditTriangle& t) {
   return agree(side(0), side(1), side(2)) || meets_side(a, b, t);
 }
 
-Box box_around(const std::array<Vec3, 3>& t) { return join(join(Box{t[0], t[0]}, Box{t[1], t[1]}), Box{t[2], t[2]}); }
-
 std::vector<std::array<Vec3, 3>> walls_of(const CellComplex& complex) {
   std::vector<std::array<Vec3, 3>> walls;
   for (const Cell c : complex.map().cells()) {
@@ -86,11 +84,13 @@ std::vector<std::array<Vec3, 3>> walls_of(const CellComplex& complex) {
 
 std::vector<Box> boxes_around(const std::vector<std::array<Vec3, 3>>& walls) {
   std::vector<Box> boxes(walls.size());
-  std::transform(walls.begin(), walls.end(), boxes.begin(), box_around);
+  std::transform(walls.begin(), walls.end(), boxes.begin(), audit_box);
   return boxes;
 }
 
 }  // namespace
+
+Box audit_box(const std::array<Vec3, 3>& t) { return join(join(Box{t[0], t[0]}, Box{t[1], t[1]}), Box{t[2], t[2]}); }
 
 bool audit_meet(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
   const auto p = detail::to_integers<6>({a[0], a[1], a[2], b[0], b[1], b[2]});
@@ -109,7 +109,7 @@ bool WallAudit::meets_wall(std::span<const Vec3> positions, const SolidElement& 
   for (std::size_t i = 0; i < 3; ++i) t[i] = positions[element.vertex[i]];
   if (!std::all_of(t.begin(), t.end(), detail::is_in_range)) return true;
   bool met = false;
-  tree_.query(box_around(t), [&](std::size_t w) {
+  tree_.query(audit_box(t), [&](std::size_t w) {
     met = audit_meet(t, walls_[w]);
     return !met;
   });

@@ -27,6 +27,9 @@ class WallAudit {
   BoxTree tree_;
 };
 
+/// The box around a triangle.
+Box audit_box(const std::array<Vec3, 3>& t);
+
 /// Whether two closed triangles have a point in common. A corner may be given twice or three times: then it is an edge or
 /// a point. Preconditions: all coordinates are finite. Cost: some 10 us.
 bool audit_meet(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);

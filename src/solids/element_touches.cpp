@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "dynamics/flat_cells.hpp"
+#include "solids/near_pair.hpp"
 
 namespace dartcast {
 
@@ -27,7 +28,7 @@ MovingElement moving(const SolidElement& e, const SolidMotion& motion) {
 Box way_of(const SolidElement& e, const SolidMotion& motion) {
   Box box = way_of(motion.from[e.vertex[0]], motion.to[e.vertex[0]]);
   for (unsigned i = 1; i < e.count; ++i) box = join(box, way_of(motion.from[e.vertex[i]], motion.to[e.vertex[i]]));
-  return box;
+  return widened(box, motion.margin);
 }
 
 Vec3 extent_of(const CellComplex& complex, Cell c, std::span<const Vec3> positions) {
@@ -61,7 +62,7 @@ bool share_a_search(std::span<const Box> boxes, const Vec3& cell) {
 void TouchFinder::find_touches(const CellComplex& complex, Cell cell, const SolidElement& element,
                                const SolidMotion& motion, const VertexMotion& walls,
                                std::vector<ElementTouch>& touches) {
-  parts_.set(near_.search(complex, cell, moving(element, motion), walls));
+  parts_.set(near_.search(complex, cell, moving(element, motion), walls, motion.margin));
   find_among(parts_, element, motion, touches);
 }
 
@@ -124,7 +125,7 @@ void TouchFinder::find_together(const Search& search, std::size_t begin, std::si
 void TouchFinder::find_each(const Search& search, std::size_t begin, std::size_t end) {
   for (std::size_t i = begin; i < end; ++i) {
     parts_.set(near_.search(search.complex, search.group.cells[i], moving(search.group.elements[i], search.motion),
-                            search.walls));
+                            search.walls, search.motion.margin));
     ask_all(search, i);
     reached_.insert(reached_.end(), cells_reached().begin(), cells_reached().end());
   }
@@ -138,10 +139,16 @@ void TouchFinder::ask_all(const Search& search, std::size_t element) {
 }
 
 // Whether the pair touches.
-bool TouchFinder::ask(PairKind kind, const MovingPair& pair, const ElementTouch& touch,
+bool TouchFinder::ask(PairKind kind, const MovingPair& pair, const SolidMotion& motion, const ElementTouch& touch,
                       std::vector<ElementTouch>& touches) {
   ++pairs_;
-  const auto time = detail::first_touch(pair, kind);
+  const bool has_margin = motion.margin > 0.0;
+  if (has_margin && motion.at_rest()) {
+    const double distance = distance_at_start(pair, kind);
+    if (distance <= motion.margin) touches.emplace_back(touch).distance = distance;
+    return distance <= motion.margin;
+  }
+  const auto time = has_margin ? first_within(pair, kind, motion.margin) : detail::first_touch(pair, kind);
   if (time) touches.emplace_back(touch).time = *time;
   return time.has_value();
 }
@@ -151,13 +158,13 @@ void TouchFinder::ask_corners(const WallParts& walls, const SolidElement& e, con
   for (unsigned i = 0; i < e.count; ++i) {
     if (((e.own_corners >> i) & 1U) == 0) continue;
     const std::uint32_t v = e.vertex[i];
-    const Box way = way_of(motion.from[v], motion.to[v]);
+    const Box way = widened(way_of(motion.from[v], motion.to[v]), motion.margin);
     for (std::size_t n = 0; n < walls.walls().size(); ++n) {
       if (!overlap(way, walls.ways()[n])) continue;
       const NearWall& w = walls.walls()[n];
       const auto& [from, to] = w.corners;
       const MovingPair pair = {{motion.from[v], from[0], from[1], from[2]}, {motion.to[v], to[0], to[1], to[2]}};
-      ask(PairKind::vertex_face, pair, {0.0, SolidContactKind::vertex_face, 1, 3, {v}, {0, 1, 2}, w}, touches);
+      ask(PairKind::vertex_face, pair, motion, {0.0, SolidContactKind::vertex_face, 1, 3, {v}, {0, 1, 2}, w}, touches);
     }
   }
 }
@@ -168,7 +175,8 @@ void TouchFinder::ask_sides(WallParts& walls, const SolidElement& e, const Solid
     if (((e.own_sides >> i) & 1U) == 0) continue;
     const std::uint32_t a = e.vertex[i];
     const std::uint32_t b = e.vertex[(i + 1) % e.count];
-    const Box way = join(way_of(motion.from[a], motion.to[a]), way_of(motion.from[b], motion.to[b]));
+    const Box way =
+        widened(join(way_of(motion.from[a], motion.to[a]), way_of(motion.from[b], motion.to[b])), motion.margin);
     for (const WallParts::Part& p : walls.edges()) {
       if (!overlap(way, p.way)) continue;
       const NearWall& w = walls.walls()[p.wall];
@@ -177,7 +185,7 @@ void TouchFinder::ask_sides(WallParts& walls, const SolidElement& e, const Solid
       const auto l = static_cast<std::uint8_t>((k + 1) % 3);
       const MovingPair pair = {{motion.from[a], motion.from[b], from[k], from[l]},
                                {motion.to[a], motion.to[b], to[k], to[l]}};
-      if (!ask(PairKind::edge_edge, pair, {0.0, SolidContactKind::edge_edge, 2, 2, {a, b}, {k, l}, w}, touches))
+      if (!ask(PairKind::edge_edge, pair, motion, {0.0, SolidContactKind::edge_edge, 2, 2, {a, b}, {k, l}, w}, touches))
         continue;
       if (p.beside != p.wall) touches.back().beside = walls.walls()[p.beside].corners;
     }
@@ -195,7 +203,8 @@ void TouchFinder::ask_face(WallParts& walls, const SolidElement& e, const SolidM
       pair.from[i + 1] = motion.from[e.vertex[i]];
       pair.to[i + 1] = motion.to[e.vertex[i]];
     }
-    ask(PairKind::vertex_face, pair, {0.0, SolidContactKind::face_vertex, 3, 1, e.vertex, {p.corner}, w}, touches);
+    ask(PairKind::vertex_face, pair, motion, {0.0, SolidContactKind::face_vertex, 3, 1, e.vertex, {p.corner}, w},
+        touches);
   }
 }
 

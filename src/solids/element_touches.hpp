@@ -20,6 +20,10 @@ namespace dartcast {
 struct SolidMotion {
   std::span<const Vec3> from;
   std::span<const Vec3> to;
+  /// Parts that come as near as this touch, too. If the same span is given twice, all that are as near do, at the time 0.
+  double margin = 0.0;
+
+  [[nodiscard]] bool at_rest() const { return from.data() == to.data(); }
 };
 
 /// A part of an element and a part of a wall that touch, and when they first do.
@@ -33,6 +37,7 @@ struct ElementTouch {
   NearWall wall;
   std::optional<MovingTriangle> beside = {};  ///< of an edge-edge touch: the other wall triangle at the edge
   std::uint32_t element = 0;                  ///< its place in the group of find()
+  double distance = 0.0;                      ///< if the motion is at rest
 };
 
 /// Elements of one solid, and the cell of each one's first vertex at the start.
@@ -74,7 +79,7 @@ class TouchFinder {
     std::vector<ElementTouch>& touches;
   };
 
-  bool ask(detail::PairKind kind, const detail::MovingPair& pair, const ElementTouch& touch,
+  bool ask(detail::PairKind kind, const detail::MovingPair& pair, const SolidMotion& motion, const ElementTouch& touch,
            std::vector<ElementTouch>& touches);
   void ask_corners(const WallParts& walls, const SolidElement& e, const SolidMotion& motion,
                    std::vector<ElementTouch>& touches);

@@ -1,6 +1,8 @@
 // The motion of an environment's walls together with what has edges among them: sets of solids, catheters.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <span>
@@ -37,13 +39,30 @@ class MovePartner {
 /// them have room. Returns the share of the ways that were made. Throws as Environment::move(), nothing changed.
 double move_together(Environment& environment, std::span<MovePartner* const> partners, std::span<const Vec3> positions);
 
+/// How far a solid's way is from its chords.
+struct SolidArc {
+  /// No point is ever farther from the chord of the whole way. Chords of n equal parts of the way: this / n^2.
+  double bend = 0.0;
+  /// The step leaves this between the solid and the walls, so that the way itself is free; 0: chords alone are looked at. A
+  /// solid that is nearer at the start keeps that distance, and its slices are as fine as it needs.
+  double separation = 0.0;
+};
+
 /// The way of a set of solids in a step: straight, or cut into slices of equal length, each of which is straight.
 struct SolidWay {
   std::vector<Vec3> targets;  ///< of all vertices: the end of the way
-  unsigned slices = 1;        ///< > 0
+  unsigned slices = 1;        ///< > 0; arcs may need more
   /// Writes where the vertices of a solid are at a share of its way, in (0, 1). None: the way is straight.
   std::function<void(std::uint32_t solid, double share, std::span<Vec3> vertices)> place = {};
+  std::vector<SolidArc> arcs = {};  ///< of each solid; empty: no solid has one
 };
+
+/// The slices in which a way leaves its chords by at most half of a distance. Precondition: distance > 0 if bend is.
+inline double slices_of(double bend, double distance) {
+  return bend > 0.0 ? std::max(1.0, std::ceil(std::sqrt(2.0 * bend / distance))) : 1.0;
+}
+/// The most slices of a step.
+inline constexpr double max_slices = 0x1p16;
 
 /// Sets of solids as partners of a joint move.
 struct JointMoves {
@@ -80,6 +99,8 @@ Vec3 on_way(const Vec3& from, const Vec3& to, double share);
 
 /// A share of the way to the first touch: the next step must not start with one.
 inline constexpr double cut_share = 15.0 / 16.0;
+/// This share of a distance at the start of a step is kept: rounding takes less than the rest.
+inline constexpr double kept_share = 1.0 - 0x1p-30;
 /// A smaller share of a way is none.
 inline constexpr double least_share = 0x1p-30;
 

@@ -124,6 +124,21 @@ Vec3 any_normal(const ElementTouch& touch, const SolidMotion& motion) {
   return against != Vec3{} ? against : Vec3{0.0, 0.0, 1.0};
 }
 
+// The normal of parts that touch: along the given one, to the side at the start.
+void choose_normal(SolidConstraint& c, const SolidMotion& motion, const Vec3& normal) {
+  const ElementTouch& touch = c.touch;
+  const Vec3 apart =
+      weighted(c.weights, solid_points(touch, motion, 0.0)) - weighted(c.wall_weights, wall_points(touch, 0.0));
+  c.normal = normal;
+  const double side = dot(c.normal, apart);
+  if (side == 0.0) c.normal = unit_or_zero(apart);
+  if (side < 0.0) c.normal = -c.normal;
+  if (touch.kind == SolidContactKind::vertex_face)
+    c.is_exit = dot(c.normal, free_side(touch.wall.corners, touch.time)) < 0.0;
+  if (touch.beside && c.normal != Vec3{}) put_between_faces(c);
+  if (c.normal == Vec3{}) c.normal = any_normal(touch, motion);
+}
+
 }  // namespace
 
 SolidConstraint constraint_of(const ElementTouch& touch, const SolidMotion& motion, double separation, double longest) {
@@ -147,16 +162,10 @@ SolidConstraint constraint_of(const ElementTouch& touch, const SolidMotion& moti
       break;
     }
   }
-  const Vec3 apart =
-      weighted(c.weights, solid_points(touch, motion, 0.0)) - weighted(c.wall_weights, wall_points(touch, 0.0));
-  c.normal = normal_at(touch, solid, wall);
-  const double side = dot(c.normal, apart);
-  if (side == 0.0) c.normal = unit_or_zero(apart);
-  if (side < 0.0) c.normal = -c.normal;
-  if (touch.kind == SolidContactKind::vertex_face)
-    c.is_exit = dot(c.normal, free_side(touch.wall.corners, touch.time)) < 0.0;
-  if (touch.beside && c.normal != Vec3{}) put_between_faces(c);
-  if (c.normal == Vec3{}) c.normal = any_normal(touch, motion);
+  const Vec3 near = weighted(c.weights, solid) - weighted(c.wall_weights, wall);
+  c.is_apart = motion.margin > 0.0 && norm(near) > 0.5 * motion.margin;
+  if (c.is_apart) c.normal = unit_or_zero(near);
+  if (!c.is_apart) choose_normal(c, motion, normal_at(touch, solid, wall));
   c.wall_point = weighted(c.wall_weights, wall_points(touch, 1.0));
   const double side_of_wall = longest_side(touch.wall.corners.from);
   c.separation = separation > 0.0 ? separation
@@ -194,9 +203,12 @@ SolidContact contact_of(const SolidConstraint& c, const CombinatorialMap& map, c
   contact.triangle = wall.triangle;
   contact.patch = map.patch(wall.face);
   std::array<std::uint16_t, 3> local{};
-  for (unsigned i = 0; i < c.touch.wall_count; ++i) local[i] = wall.local[c.touch.corners[i]];
+  std::size_t corners = 0;
+  for (unsigned i = 0; i < c.touch.wall_count; ++i) {
+    if (!c.is_apart || c.wall_weights[i] > 0.0) local[corners++] = wall.local[c.touch.corners[i]];
+  }
   const Shape::Feature feature =
-      map.shape(wall.face.cell).feature(std::span<const std::uint16_t>(local).first(c.touch.wall_count));
+      map.shape(wall.face.cell).feature(std::span<const std::uint16_t>(local).first(corners));
   contact.wall_kind = feature.kind;
   contact.dart = {wall.face.cell, feature.dart};
   contact.time_of_impact = c.touch.time;

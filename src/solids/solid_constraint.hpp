@@ -21,6 +21,7 @@ struct SolidConstraint {
   unsigned slice = 0;    ///< of the step, in which the touch is
   /// The way leaves the wall here: it has entered it at an earlier touch, and a correction would keep it in.
   bool is_exit = false;
+  bool is_apart = false;  ///< they came near each other, but do not touch
 };
 
 /// `longest`: the longest side of the solid; 0 if it has none.

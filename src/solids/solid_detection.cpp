@@ -102,7 +102,8 @@ void SolidSet::Impl::look_at(const Run& run, const SolidMotion& motion, const Ve
     part.cells[i] = simplices[part.elements[i].vertex[0]].cell;
   }
   const std::size_t first = part.touches.size();
-  const auto flat = part.finder.find(environment.complex(), {part.elements, part.cells}, motion, walls, part.touches);
+  const SolidMotion mine = {motion.from, motion.to, margins[solid_of_element[numbers.front()]]};
+  const auto flat = part.finder.find(environment.complex(), {part.elements, part.cells}, mine, walls, part.touches);
   for (std::size_t i = first; i < part.touches.size(); ++i) part.touches[i].element = numbers[part.touches[i].element];
   if (flat) part.flats.push_back({solid_of_element[numbers.front()], *flat});
 }

@@ -47,6 +47,11 @@ void SolidSet::Impl::remove(std::uint32_t solid) {
     first_vertex[s] -= vertices;
     first_element[s] -= parts_of_it;
   }
+  erase(meets, solid, solid + 1);
+  for (auto& others : meets) {
+    std::erase(others, solid);
+    for (std::uint32_t& other : others) other -= other > solid ? 1 : 0;
+  }
   std::erase_if(stuck, [&](const SolidPlacement& p) { return p.solid == solid; });
   for (SolidPlacement& p : stuck) p.solid -= p.solid > solid ? 1 : 0;
 }

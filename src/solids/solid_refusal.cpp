@@ -1,7 +1,8 @@
-// Whether a solid may be where it is: its vertices, then its edges and triangles, then walls inside it.
+// Whether a solid may be where it is: its vertices, then its edges and triangles, then walls inside it. Then other solids.
 #include "solids/solid_refusal.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -69,13 +70,29 @@ SolidRefusal refusal_of(const CellComplex& complex, NearWalls& near, Cell cell, 
   return flat ? SolidRefusal::cell_not_positive : SolidRefusal::none;
 }
 
-// Walls inside a closed solid touch nothing, so a search of its whole box looks for them.
-bool encloses_wall(const CellComplex& complex, std::span<const Vec3> points, std::span<const SolidElement> elements,
-                   std::span<const Cell> cells) {
+std::vector<SurfaceTriangle> triangles_of(std::span<const SolidElement> elements) {
   std::vector<SurfaceTriangle> triangles;
   for (const SolidElement& e : elements) {
     if (e.count == 3) triangles.push_back(e.vertex);
   }
+  return triangles;
+}
+
+// The first point that is inside a closed solid; none if there is none, or it is not closed.
+std::optional<std::uint32_t> first_inside(std::span<const Vec3> points, const SolidShape& solid) {
+  std::vector<SurfaceTriangle> triangles = triangles_of(solid.elements);
+  if (!is_closed(triangles)) return {};
+  const InsideTest test({solid.points.begin(), solid.points.end()}, std::move(triangles));
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    if (test.side(points[i]) == PointSide::inside) return i;
+  }
+  return {};
+}
+
+// Walls inside a closed solid touch nothing, so a search of its whole box looks for them.
+bool encloses_wall(const CellComplex& complex, std::span<const Vec3> points, std::span<const SolidElement> elements,
+                   std::span<const Cell> cells) {
+  std::vector<SurfaceTriangle> triangles = triangles_of(elements);
   if (!is_closed(triangles)) return false;
   const std::uint32_t first = triangles[0][0];
   const InsideTest test({points.begin(), points.end()}, std::move(triangles));
@@ -108,6 +125,27 @@ SolidPlacement find_refusal(const CellComplex& complex, std::span<const Vec3> po
   }
   if (encloses_wall(complex, points, elements, cells)) return refused(SolidRefusal::encloses_wall, elements.front());
   return flat;
+}
+
+SolidPlacement find_overlap(const SolidShape& solid, const SolidShape& other) {
+  std::vector<Box> boxes(other.elements.size());
+  std::transform(other.elements.begin(), other.elements.end(), boxes.begin(),
+                 [&](const SolidElement& e) { return audit_box(corners_of(e, other.points)); });
+  const BoxTree tree(std::move(boxes));
+  for (const SolidElement& e : solid.elements) {
+    const Corners3 corners = corners_of(e, solid.points);
+    bool meets = false;
+    tree.query(audit_box(corners), [&](std::size_t i) {
+      const Corners3 others = corners_of(other.elements[i], other.points);
+      meets = !on_one_side(corners, others) && audit_meet(corners, others);
+      return !meets;
+    });
+    if (meets) return refused(SolidRefusal::meets_solid, e);
+  }
+  if (const auto inside = first_inside(solid.points, other))
+    return refused(SolidRefusal::meets_solid, {{*inside, *inside, *inside}, 1});
+  if (first_inside(other.points, solid)) return refused(SolidRefusal::meets_solid, solid.elements.front());
+  return {};
 }
 
 }  // namespace dartcast

@@ -35,9 +35,12 @@ void SolidSet::Impl::check_current(const char* caller) const {
         caller));
 }
 
-SolidPlacement SolidSet::Impl::add(const SolidMesh& given) {
+SolidPlacement SolidSet::Impl::add(const SolidMesh& given, std::span<const std::uint32_t> others) {
   check(given);
   check_current("add");
+  const auto unknown = std::find_if(others.begin(), others.end(), [&](std::uint32_t o) { return o >= count(); });
+  if (unknown != others.end())
+    throw InvalidArgument(fmt::format("add: there is no solid {} to meet: the set has {}", *unknown, count()));
   SolidMesh mesh = given;
   std::transform(mesh.points.begin(), mesh.points.end(), mesh.points.begin(), flushed);
   const std::vector<Location> located = environment.locate(mesh.points);
@@ -47,6 +50,8 @@ SolidPlacement SolidSet::Impl::add(const SolidMesh& given) {
   }
   const std::vector<SolidElement> added = elements_of(mesh);
   SolidPlacement result = find_refusal(environment.complex(), mesh.points, added, cells);
+  for (std::size_t i = 0; i < others.size() && result.refusal == SolidRefusal::none; ++i)
+    result = overlap_with(others[i], mesh.points, added);
   if (result.refusal != SolidRefusal::none) return result;
   try {
     for (std::size_t i = 0; i < located.size(); ++i) {
@@ -54,11 +59,27 @@ SolidPlacement SolidSet::Impl::add(const SolidMesh& given) {
         throw InternalError(
             fmt::format("solids: point {} of the solid is not in the simplex that was found for it", i));
     }
+    std::vector<std::uint32_t>& met = meets.emplace_back(others.begin(), others.end());
+    std::sort(met.begin(), met.end());
+    met.erase(std::unique(met.begin(), met.end()), met.end());
     result.solid = append(mesh, added);
   } catch (...) {
     keep_first(static_cast<std::uint32_t>(longest.size()));
     throw;
   }
+  return result;
+}
+
+SolidPlacement SolidSet::Impl::overlap_with(std::uint32_t other, std::span<const Vec3> points,
+                                            std::span<const SolidElement> added) const {
+  std::vector<SolidElement> own(elements.begin() + first_element[other], elements.begin() + first_element[other + 1]);
+  for (SolidElement& e : own) {
+    for (std::uint32_t& v : e.vertex) v -= first_vertex[other];
+  }
+  const auto places =
+      std::span<const Vec3>(positions).subspan(first_vertex[other], first_vertex[other + 1] - first_vertex[other]);
+  SolidPlacement result = find_overlap({points, added}, {places, own});
+  if (result.refusal != SolidRefusal::none) result.other = other;
   return result;
 }
 
@@ -79,6 +100,7 @@ std::uint32_t SolidSet::Impl::append(const SolidMesh& mesh, std::span<const Soli
 }
 
 void SolidSet::Impl::keep_first(std::uint32_t solids) {
+  meets.resize(solids);
   first_vertex.resize(solids + 1);
   first_element.resize(solids + 1);
   elements.resize(first_element.back());
@@ -88,22 +110,50 @@ void SolidSet::Impl::keep_first(std::uint32_t solids) {
   particles.truncate(first_vertex.back());
 }
 
+// The solid that an element meets; none if it is count().
+std::uint32_t SolidSet::Impl::audit_other(std::size_t element, const BoxTree& all) const {
+  const std::uint32_t mine = solid_of_element[element];
+  const auto corners = [&](std::size_t e) {
+    const auto& v = elements[e].vertex;
+    return std::array{positions[v[0]], positions[v[1]], positions[v[2]]};
+  };
+  std::uint32_t met = count();
+  all.query(audit_box(corners(element)), [&](std::size_t e) {
+    const std::uint32_t other = solid_of_element[e];
+    if (is_stuck(other) || !std::binary_search(meets[mine].begin(), meets[mine].end(), other)) return true;
+    if (audit_meet(corners(element), corners(e))) met = other;
+    return met == count();
+  });
+  return met;
+}
+
 SolidAudit SolidSet::Impl::audit() const {
   constexpr std::size_t grain = 64;
   const WallAudit walls(environment.complex());
-  std::vector<std::uint8_t> meets(elements.size());
+  std::vector<Box> boxes;
+  for (std::size_t e = 0; have_pairs() && e < elements.size(); ++e) {
+    const auto& v = elements[e].vertex;
+    boxes.push_back(audit_box({positions[v[0]], positions[v[1]], positions[v[2]]}));
+  }
+  const BoxTree all(std::move(boxes));
+  std::vector<std::uint8_t> meets_wall(elements.size());
+  std::vector<std::uint32_t> other(elements.size(), count());
   parallel_for(elements.size(), grain, environment.threads(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      meets[i] = !is_stuck(solid_of_element[i]) && walls.meets_wall(positions, elements[i]) ? 1 : 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (is_stuck(solid_of_element[i])) continue;
+      meets_wall[i] = walls.meets_wall(positions, elements[i]) ? 1 : 0;
+      other[i] = audit_other(i, all);
+    }
   });
   SolidAudit audit;
   for (std::size_t i = 0; i < elements.size(); ++i) {
     audit.checked += is_stuck(solid_of_element[i]) ? 0 : 1;
-    if (meets[i] == 0 || audit.failed++ != 0) continue;
+    if ((meets_wall[i] == 0 && other[i] == count()) || audit.failed++ != 0) continue;
     const std::uint32_t solid = solid_of_element[i];
     std::vector<std::uint32_t> numbers;
     for (unsigned k = 0; k < elements[i].count; ++k) numbers.push_back(elements[i].vertex[k] - first_vertex[solid]);
-    audit.first = fmt::format("solid {}: the part with the vertices {} meets a wall", solid, fmt::join(numbers, ", "));
+    audit.first = fmt::format("solid {}: the part with the vertices {} meets {}", solid, fmt::join(numbers, ", "),
+                              meets_wall[i] != 0 ? "a wall" : fmt::format("solid {}", other[i]));
   }
   return audit;
 }
@@ -115,7 +165,9 @@ SolidSet::SolidSet(Environment& environment) : impl_(std::make_unique<Impl>(envi
 
 SolidSet::~SolidSet() = default;
 
-SolidPlacement SolidSet::add(const SolidMesh& mesh) { return impl_->add(mesh); }
+SolidPlacement SolidSet::add(const SolidMesh& mesh, std::span<const std::uint32_t> meets) {
+  return impl_->add(mesh, meets);
+}
 std::size_t SolidSet::size() const { return impl_->longest.size(); }
 std::span<const Vec3> SolidSet::positions() const { return impl_->positions; }
 std::span<const std::uint32_t> SolidSet::first_vertices() const { return impl_->first_vertex; }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -30,6 +31,7 @@ struct SolidSet::Impl final : MovePartner {
   std::vector<std::uint32_t> first_vertex = {0};   // one more than solids
   std::vector<std::uint32_t> first_element = {0};  // likewise
   std::vector<double> longest;                     // side of each solid, when it was added
+  std::vector<std::vector<std::uint32_t>> meets;   // those before each solid that it meets, sorted
 
   [[nodiscard]] std::uint32_t count() const { return static_cast<std::uint32_t>(longest.size()); }
   [[nodiscard]] std::uint32_t solid_of(std::size_t vertex) const {
@@ -42,11 +44,14 @@ struct SolidSet::Impl final : MovePartner {
 
   // --- adding (solid_set.cpp)
 
-  SolidPlacement add(const SolidMesh& given);
+  SolidPlacement add(const SolidMesh& given, std::span<const std::uint32_t> others);
+  [[nodiscard]] SolidPlacement overlap_with(std::uint32_t other, std::span<const Vec3> points,
+                                            std::span<const SolidElement> added) const;
   std::uint32_t append(const SolidMesh& mesh, std::span<const SolidElement> added);
   void keep_first(std::uint32_t solids);
   void check_current(const char* caller) const;
   [[nodiscard]] SolidAudit audit() const;
+  [[nodiscard]] std::uint32_t audit_other(std::size_t element, const BoxTree& all) const;
 
   // --- edits (solid_edit.cpp)
 
@@ -104,9 +109,10 @@ struct SolidSet::Impl final : MovePartner {
   };
   // Where a solid stops: after a share of a slice.
   struct Stop {
-    unsigned slice = 0;  // the number of slices: it does not stop
+    unsigned slice = 0;
     double share = 0.0;
   };
+  static constexpr Stop no_stop = {std::numeric_limits<unsigned>::max(), 0.0};
   using Solids = std::vector<std::uint32_t>;
 
   [[nodiscard]] Solids all_but_stuck() const;
@@ -119,6 +125,8 @@ struct SolidSet::Impl final : MovePartner {
   [[nodiscard]] double way_made(std::uint32_t solid, double walls_made) const;
   double plan_slice(const VertexMotion& walls);
   void begin_way();
+  void choose_slices(const VertexMotion& walls);
+  void choose_margins(const VertexMotion& walls);
   void end_slice(const VertexMotion& walls);
   // The simplices that hold the vertices at the end of the way; none: it is straight.
   [[nodiscard]] std::span<const SimplexId> ends() const {
@@ -133,6 +141,25 @@ struct SolidSet::Impl final : MovePartner {
   void keep_first_touches(const Solids& cut, const SolidStepOptions& options);
   void commit_at_rest();
   void report();
+
+  // --- solids that meet each other (solid_pairs.cpp)
+
+  struct Pair {
+    std::uint32_t solid;
+    std::uint32_t other;
+    double margin;
+    std::vector<ElementTouch> touches;
+  };
+  [[nodiscard]] bool have_pairs() const;
+  [[nodiscard]] std::span<const SolidElement> elements_of_solid(std::uint32_t solid) const;
+  [[nodiscard]] bool moves(std::uint32_t solid, std::span<const Vec3> to) const;
+  [[nodiscard]] std::vector<Pair> near_pairs(std::span<const Vec3> to, std::span<const double> kept) const;
+  void look_at_pairs(std::vector<Pair>& pairs, std::span<const Vec3> to) const;
+  [[nodiscard]] std::vector<Pair> touching_pairs(std::span<const Vec3> to) const;
+  void leave_margins_to_solids();
+  [[nodiscard]] Solids to_blame(const Pair& pair, const SolidConstraint& meeting) const;
+  void stop_at_solids(Solids& squeezed, const VertexMotion& walls);
+  void report_meetings();
 
   // --- what touches on the way (solid_detection.cpp)
 
@@ -149,6 +176,7 @@ struct SolidSet::Impl final : MovePartner {
   SolidStepOptions step_options;
   SolidWay way;
   unsigned slice = 0;
+  std::vector<double> margins;  // what each solid keeps from walls in this step
   std::vector<Stop> stops;
   std::vector<double> shares;                  // of the slice, for each solid
   std::vector<Vec3> from;                      // where the slice starts
@@ -159,6 +187,7 @@ struct SolidSet::Impl final : MovePartner {
   std::vector<Vec3> uncorrected;               // before the last correction
   std::vector<Vec3> reached;                   // a share of the slice
   std::vector<SolidConstraint> first_touches;  // of the solids that are cut
+  std::vector<SolidConstraint> meetings;       // of solids that stop at each other, whose elements are the walls
   std::vector<Progress> progress;
   std::vector<Part> parts;
   std::vector<std::uint32_t> looked_at;  // elements, in a detection

@@ -1,5 +1,8 @@
 // A way of solids in slices, each of them straight, while the walls make equal parts of theirs. All slices are planned
 // before a vertex goes. So the simplices that hold the vertices between two slices are found here, by exact signs.
+//
+// On an arc each solid has a margin. It is the separation that is asked for, or the distance from the walls at the start if
+// that is smaller. The chords of slices keep the margin from walls, and the arc leaves them by half of it at most.
 #include <algorithm>
 
 #include "base/parallel.hpp"
@@ -13,6 +16,29 @@ void SolidSet::Impl::begin_way() {
   from = positions;
   simplices.resize(positions.size());
   for (std::size_t v = 0; v < simplices.size(); ++v) simplices[v] = particles[v].at();
+}
+
+// How many slices the arcs need.
+void SolidSet::Impl::choose_slices(const VertexMotion& walls) {
+  constexpr double least_margin = 0x1p-20;  // of the separation: from nearer places arcs are not proved free
+  choose_margins(walls);
+  double slices = way.slices;
+  for (const std::uint32_t s : all_but_stuck()) {
+    const auto [bend, separation] = way.arcs[s];
+    if (separation > 0.0) slices = std::max(slices, slices_of(bend, std::max(margins[s], least_margin * separation)));
+  }
+  way.slices = static_cast<unsigned>(std::min(slices, max_slices));
+}
+
+void SolidSet::Impl::choose_margins(const VertexMotion& walls) {
+  Solids on_arcs = all_but_stuck();
+  std::erase_if(on_arcs, [&](std::uint32_t s) { return way.arcs[s].separation == 0.0; });
+  for (const std::uint32_t s : on_arcs) margins[s] = way.arcs[s].separation;
+  detect(on_arcs, from, {walls.before, walls.before});
+  for (const std::uint32_t s : on_arcs) {
+    for (const ElementTouch& t : progress[s].touches) margins[s] = std::min(margins[s], kept_share * t.distance);
+  }
+  if (have_pairs()) leave_margins_to_solids();
 }
 
 // The targets of a slice.

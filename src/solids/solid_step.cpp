@@ -4,12 +4,13 @@
 //  2. correct_in_rounds()   detect() finds all touches on the way (solid_detection.cpp); correct() moves the targets away from
 //                           these walls
 //  3. cut_each()            what still touches goes a share of its way, each solid its own. Walls that run into a solid even
-//                           so stop, and all solids with them: shorten(). The rounded share is detected again.
+//                           so stop, and all solids with them: shorten(). The rounded share is detected again. Then
+//                           stop_at_solids() cuts ways that touch each other (solid_pairs.cpp)
 //  4. report()
 //  5. commit_at_rest(), after_move()   the vertices, which are particles, get there
 //
 // A way that is not straight (SolidWay) is taken in slices, each with 2 and 3, before the vertices go. The walls make
-// equal parts of their way in the meantime.
+// equal parts of their way in the meantime. On arcs a wall counts as touched at a distance (solid_slices.cpp).
 //
 // With moving walls solids are partners of a joint move (joint_move.hpp), which calls the phases.
 //
@@ -109,9 +110,11 @@ void SolidSet::Impl::start(SolidWay given, const SolidStepOptions& options, cons
   std::transform(way.targets.begin(), way.targets.end(), wanted.begin(), flushed);
   targets = wanted;
   uncorrected.resize(positions.size());
-  stops.assign(count(), {way.slices, 0.0});
+  stops.assign(count(), no_stop);
+  margins.assign(count(), 0.0);
   shares.assign(count(), 1.0);
   first_touches.clear();
+  meetings.clear();
   begin_way();
   progress.resize(count());
   for (Progress& p : progress) p.constraints.clear();
@@ -184,16 +187,16 @@ void SolidSet::Impl::keep_first_touches(const Solids& cut, const SolidStepOption
     const auto first = std::min_element(p.touches.begin(), p.touches.end(), earlier);
     if (p.flat_time == 0.0 && slice == 0) last.held.push_back(s);
     if (first == p.touches.end() || p.flat_time < first->time) continue;
-    first_touches.push_back(constraint_of(*first, {from, targets}, options.separation, longest[s]));
+    first_touches.push_back(constraint_of(*first, {from, targets, margins[s]}, options.separation, longest[s]));
     first_touches.back().slice = slice;
   }
 }
 
-// Each solid stops by itself. At the end `open` has those that walls run into even if they stay.
+// Makes the ways of these solids shorter until they meet no wall, from the shares that they have. At the end `open` has
+// those that walls run into even if they stay.
 void SolidSet::Impl::cut_each(Solids& open, const VertexMotion& walls) {
   const double least = walls.at_rest() ? least_share : least_share_among_moving_walls;
   Solids squeezed;
-  for (const std::uint32_t s : open) shares[s] = cut_share * progress[s].free_until();
   while (!open.empty()) {
     for (const std::uint32_t s : open) go(s, shares[s] < least ? 0.0 : shares[s]);
     if (walls.at_rest()) std::erase_if(open, [&](std::uint32_t s) { return shares[s] == 0.0; });
@@ -219,6 +222,7 @@ bool SolidSet::Impl::shorten(double share, const VertexMotion& walls) {
     const VertexMotion now = walls_in(piece, pieces, walls);
     detect(all, reached, now);
     if (!std::all_of(all.begin(), all.end(), [&](std::uint32_t s) { return progress[s].is_free(); })) return false;
+    if (have_pairs() && !touching_pairs(reached).empty()) return false;
     end_slice(now);
   }
   return true;
@@ -276,6 +280,7 @@ void SolidSet::Impl::report() {
   for (const SolidConstraint& c : first_touches) last.contacts.push_back(describe(c, solid_of(c.touch.vertices[0])));
   std::sort(last.held.begin(), last.held.end());
   sort_and_join(last.contacts);
+  report_meetings();
   last.pairs = pairs_so_far() - pairs_before;
 }
 
@@ -293,6 +298,7 @@ void SolidSet::Impl::prepare(SolidWay given, const SolidStepOptions& options) {
 
 double SolidSet::Impl::plan(const VertexMotion& walls) {
   double walls_made = 1.0;
+  if (!way.arcs.empty()) choose_slices(walls);
   for (; slice < way.slices && walls_made == 1.0; ++slice) {
     const VertexMotion now = walls_in(slice, way.slices, walls);
     aim();
@@ -315,7 +321,9 @@ double SolidSet::Impl::plan_slice(const VertexMotion& walls) {
   correct_in_rounds(open, walls, step_options);
   reached = targets;
   keep_first_touches(open, step_options);
+  for (const std::uint32_t s : open) shares[s] = cut_share * progress[s].free_until();
   cut_each(open, walls);
+  if (have_pairs()) stop_at_solids(open, walls);
   double share = 1.0;
   for (const std::uint32_t s : open) share = std::min(share, cut_share * progress[s].free_until());
   return share;

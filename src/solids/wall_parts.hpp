@@ -1,7 +1,9 @@
 // Walls near an element or a group of them, with their edges and vertices: each of these once.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -13,6 +15,14 @@ namespace dartcast {
 
 /// The box of a point's straight way.
 inline Box way_of(const Vec3& from, const Vec3& to) { return join({from, from}, {to, to}); }
+
+/// Larger by a length on each side, and by more than the rounding of that; the same box if the length is 0.
+inline Box widened(const Box& box, double by) {
+  if (by == 0.0) return box;
+  const auto largest = [](const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
+  const double more = by + 0x1p-50 * std::max({by, largest(box.low), largest(box.high)});
+  return {box.low - Vec3{more, more, more}, box.high + Vec3{more, more, more}};
+}
 
 class WallParts {
  public:

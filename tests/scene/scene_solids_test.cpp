@@ -24,6 +24,7 @@ name = "needle"
 points = [[0.0, 0.0, 0.0], [0, 0, 1]]
 pivot = [0.0, 0.0, 0.5]
 catch_up = true
+meets = ["solid1"]
 moves = [{ until = 1.0, velocity = [0.0, 0.0, 0.1], turn = [1.0, 0.0, 0.0] }]
 )",
                               "folder/scene.toml");
@@ -38,6 +39,8 @@ moves = [{ until = 1.0, velocity = [0.0, 0.0, 0.1], turn = [1.0, 0.0, 0.0] }]
   EXPECT_EQ(std::get<std::vector<Vec3>>(s.solids[1].shape), (std::vector<Vec3>{{0, 0, 0}, {0, 0, 1}}));
   EXPECT_EQ(s.solids[1].pivot, (Vec3{0.0, 0.0, 0.5}));
   EXPECT_TRUE(s.solids[1].catch_up);
+  EXPECT_FALSE(s.solids[0].meets);
+  EXPECT_EQ(s.solids[1].meets, std::vector<std::string>{"solid1"});
   ASSERT_EQ(s.solids[1].moves.size(), 1U);
   EXPECT_EQ(s.solids[1].moves[0].velocity, (Vec3{0.0, 0.0, 0.1}));
   EXPECT_EQ(s.solids[1].moves[0].turn, (Vec3{1.0, 0.0, 0.0}));

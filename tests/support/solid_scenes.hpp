@@ -71,8 +71,9 @@ class TossedSolids {
  public:
   TossedSolids(Environment& environment, std::uint64_t seed) : solids(environment), random_(seed) {}
 
-  /// Copies at random places of a box, as many as find room.
-  void fill(const SolidMesh& mesh, std::size_t count, double box) {
+  /// Copies at random places of a box, as many as find room; each meets those before it, or none.
+  void fill(const SolidMesh& mesh, std::size_t count, double box, bool meet = false) {
+    std::vector<std::uint32_t> met;
     for (int tries = 0; tries < 5000 && solids.size() < count; ++tries) {
       const Vec3 at = {random_.uniform(0.0, box), random_.uniform(0.0, box), random_.uniform(0.0, box)};
       SolidMesh here = moved(mesh, at);
@@ -81,7 +82,8 @@ class TossedSolids {
       };
       if (std::any_of(here.points.begin(), here.points.end(), outside)) continue;
       const std::size_t first = solids.positions().size();
-      if (solids.add(here).refusal != SolidRefusal::none) continue;
+      for (auto s = static_cast<std::uint32_t>(met.size()); meet && s < solids.size(); ++s) met.push_back(s);
+      if (solids.add(here, met).refusal != SolidRefusal::none) continue;
       std::vector<std::array<std::uint32_t, 2>> pairs = here.edges;
       for (const auto& t : here.triangles) pairs.insert(pairs.end(), {{t[0], t[1]}, {t[1], t[2]}, {t[2], t[0]}});
       for (const auto& [a, b] : pairs) sides_.push_back({first + a, first + b, norm(here.points[a] - here.points[b])});
