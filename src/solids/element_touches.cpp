@@ -28,7 +28,8 @@ MovingElement moving(const SolidElement& e, const SolidMotion& motion) {
 Box way_of(const SolidElement& e, const SolidMotion& motion) {
   Box box = way_of(motion.from[e.vertex[0]], motion.to[e.vertex[0]]);
   for (unsigned i = 1; i < e.count; ++i) box = join(box, way_of(motion.from[e.vertex[i]], motion.to[e.vertex[i]]));
-  return widened(box, motion.margin);
+  if (motion.margin > 0.0) box = widened(box, motion.margin);
+  return box;
 }
 
 Vec3 extent_of(const CellComplex& complex, Cell c, std::span<const Vec3> positions) {
@@ -142,15 +143,22 @@ void TouchFinder::ask_all(const Search& search, std::size_t element) {
 bool TouchFinder::ask(PairKind kind, const MovingPair& pair, const SolidMotion& motion, const ElementTouch& touch,
                       std::vector<ElementTouch>& touches) {
   ++pairs_;
-  const bool has_margin = motion.margin > 0.0;
-  if (has_margin && motion.at_rest()) {
-    const double distance = distance_at_start(pair, kind);
-    if (distance <= motion.margin) touches.emplace_back(touch).distance = distance;
-    return distance <= motion.margin;
-  }
-  const auto time = has_margin ? first_within(pair, kind, motion.margin) : detail::first_touch(pair, kind);
+  if (motion.margin > 0.0) return ask_near(kind, pair, motion, touch, touches);
+  const auto time = detail::first_touch(pair, kind);
   if (time) touches.emplace_back(touch).time = *time;
   return time.has_value();
+}
+
+// Whether the pair comes as near as the margin.
+bool TouchFinder::ask_near(PairKind kind, const MovingPair& pair, const SolidMotion& motion, const ElementTouch& touch,
+                           std::vector<ElementTouch>& touches) {
+  const double distance = motion.at_rest() ? distance_at_start(pair, kind) : 0.0;
+  const auto time = motion.at_rest() ? std::optional(0.0) : first_within(pair, kind, motion.margin);
+  if (!time || distance > motion.margin) return false;
+  touches.push_back(touch);
+  touches.back().time = *time;
+  touches.back().distance = distance;
+  return true;
 }
 
 void TouchFinder::ask_corners(const WallParts& walls, const SolidElement& e, const SolidMotion& motion,
@@ -158,7 +166,8 @@ void TouchFinder::ask_corners(const WallParts& walls, const SolidElement& e, con
   for (unsigned i = 0; i < e.count; ++i) {
     if (((e.own_corners >> i) & 1U) == 0) continue;
     const std::uint32_t v = e.vertex[i];
-    const Box way = widened(way_of(motion.from[v], motion.to[v]), motion.margin);
+    Box way = way_of(motion.from[v], motion.to[v]);
+    if (motion.margin > 0.0) way = widened(way, motion.margin);
     for (std::size_t n = 0; n < walls.walls().size(); ++n) {
       if (!overlap(way, walls.ways()[n])) continue;
       const NearWall& w = walls.walls()[n];
@@ -175,8 +184,8 @@ void TouchFinder::ask_sides(WallParts& walls, const SolidElement& e, const Solid
     if (((e.own_sides >> i) & 1U) == 0) continue;
     const std::uint32_t a = e.vertex[i];
     const std::uint32_t b = e.vertex[(i + 1) % e.count];
-    const Box way =
-        widened(join(way_of(motion.from[a], motion.to[a]), way_of(motion.from[b], motion.to[b])), motion.margin);
+    Box way = join(way_of(motion.from[a], motion.to[a]), way_of(motion.from[b], motion.to[b]));
+    if (motion.margin > 0.0) way = widened(way, motion.margin);
     for (const WallParts::Part& p : walls.edges()) {
       if (!overlap(way, p.way)) continue;
       const NearWall& w = walls.walls()[p.wall];

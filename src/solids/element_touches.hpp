@@ -81,6 +81,8 @@ class TouchFinder {
 
   bool ask(detail::PairKind kind, const detail::MovingPair& pair, const SolidMotion& motion, const ElementTouch& touch,
            std::vector<ElementTouch>& touches);
+  bool ask_near(detail::PairKind kind, const detail::MovingPair& pair, const SolidMotion& motion,
+                const ElementTouch& touch, std::vector<ElementTouch>& touches);
   void ask_corners(const WallParts& walls, const SolidElement& e, const SolidMotion& motion,
                    std::vector<ElementTouch>& touches);
   void ask_sides(WallParts& walls, const SolidElement& e, const SolidMotion& motion,

@@ -46,7 +46,8 @@ std::vector<ElementTouch> SolidPairFinder::find(std::span<const SolidElement> so
     Box box = box_of(group[0], motion);
     for (const SolidElement& e : group) box = join(box, box_of(e, motion));
     std::vector<std::size_t> near;
-    tree.query(widened(box, motion.margin), [&](std::size_t i) {
+    if (motion.margin > 0.0) box = widened(box, motion.margin);
+    tree.query(box, [&](std::size_t i) {
       near.push_back(i);
       return true;
     });

@@ -16,9 +16,8 @@ namespace dartcast {
 /// The box of a point's straight way.
 inline Box way_of(const Vec3& from, const Vec3& to) { return join({from, from}, {to, to}); }
 
-/// Larger by a length on each side, and by more than the rounding of that; the same box if the length is 0.
+/// Larger by a length on each side, and by more than the rounding of that.
 inline Box widened(const Box& box, double by) {
-  if (by == 0.0) return box;
   const auto largest = [](const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
   const double more = by + 0x1p-50 * std::max({by, largest(box.low), largest(box.high)});
   return {box.low - Vec3{more, more, more}, box.high + Vec3{more, more, more}};
