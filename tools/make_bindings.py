@@ -246,9 +246,10 @@ def arguments(name: read_headers.Name, types: set[str]) -> list[tuple[str, str]]
         declared, _, value = part.partition(" = ")
         kind, _, last = declared.rpartition(" ")
         kind = re.sub(r"^const | &$", "", kind)
-        kind = re.sub(r"std :: span < const (std :: uint\d+_t) >", r"std::vector<\1>", kind)
-        castable = kind in types or re.fullmatch(r"bool|double|unsigned|std :: (size_t|uint\d+_t|string)|std::vector<.*>", kind)
+        castable = kind in types or re.fullmatch(r"bool|double|unsigned|std :: (size_t|uint\d+_t|string)", kind)
         code = f"[] {{ return pybind11::cast({kind}({value.strip('{}')})); }}" if value and castable else ""
+        if value and re.fullmatch(r"std :: span < const std :: uint\d+_t >", kind):
+            code = "[] { return pybind11::object(pybind11::tuple()); }"
         found.append((last + "_" if keyword.iskeyword(last) else last, code))
     return found
 

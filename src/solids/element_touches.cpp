@@ -25,13 +25,6 @@ MovingElement moving(const SolidElement& e, const SolidMotion& motion) {
   return m;
 }
 
-Box way_of(const SolidElement& e, const SolidMotion& motion) {
-  Box box = way_of(motion.from[e.vertex[0]], motion.to[e.vertex[0]]);
-  for (unsigned i = 1; i < e.count; ++i) box = join(box, way_of(motion.from[e.vertex[i]], motion.to[e.vertex[i]]));
-  if (motion.margin > 0.0) box = widened(box, motion.margin);
-  return box;
-}
-
 Vec3 extent_of(const CellComplex& complex, Cell c, std::span<const Vec3> positions) {
   const auto vertices = complex.map().view(c).vertices();
   Box box = {positions[vertices[0]], positions[vertices[0]]};
@@ -84,6 +77,7 @@ std::optional<double> TouchFinder::find(const CellComplex& complex, const Elemen
   reached_.clear();
   boxes_.clear();
   for (const SolidElement& e : group.elements) boxes_.push_back(way_of(e, motion));
+  if (motion.margin > 0.0) widen_boxes(motion.margin);
   for (std::size_t first = 0; first < size; first += elements_in_group)
     find_part(search, first, std::min<std::size_t>(first + elements_in_group, size));
   if (!first_flat_of_reached(complex, walls)) return {};
@@ -91,6 +85,10 @@ std::optional<double> TouchFinder::find(const CellComplex& complex, const Elemen
   reached_.clear();
   find_each(search, 0, size);
   return first_flat_of_reached(complex, walls);
+}
+
+void TouchFinder::widen_boxes(double margin) {
+  for (Box& b : boxes_) b = widened(b, margin);
 }
 
 std::optional<double> TouchFinder::first_flat_of_reached(const CellComplex& complex, const VertexMotion& walls) {
@@ -203,7 +201,8 @@ void TouchFinder::ask_sides(WallParts& walls, const SolidElement& e, const Solid
 
 void TouchFinder::ask_face(WallParts& walls, const SolidElement& e, const SolidMotion& motion,
                            std::vector<ElementTouch>& touches) {
-  const Box way = way_of(e, motion);
+  Box way = way_of(e, motion);
+  if (motion.margin > 0.0) way = widened(way, motion.margin);
   for (const WallParts::Part& p : walls.vertices()) {
     if (!overlap(way, p.way)) continue;
     const NearWall& w = walls.walls()[p.wall];

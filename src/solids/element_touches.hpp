@@ -26,6 +26,13 @@ struct SolidMotion {
   [[nodiscard]] bool at_rest() const { return from.data() == to.data(); }
 };
 
+/// The box of an element's way, without the margin.
+inline Box way_of(const SolidElement& e, const SolidMotion& motion) {
+  Box box = way_of(motion.from[e.vertex[0]], motion.to[e.vertex[0]]);
+  for (unsigned i = 1; i < e.count; ++i) box = join(box, way_of(motion.from[e.vertex[i]], motion.to[e.vertex[i]]));
+  return box;
+}
+
 /// A part of an element and a part of a wall that touch, and when they first do.
 struct ElementTouch {
   double time = 0.0;
@@ -88,6 +95,7 @@ class TouchFinder {
   void ask_sides(WallParts& walls, const SolidElement& e, const SolidMotion& motion,
                  std::vector<ElementTouch>& touches);
   void ask_face(WallParts& walls, const SolidElement& e, const SolidMotion& motion, std::vector<ElementTouch>& touches);
+  void widen_boxes(double margin);
   void find_part(const Search& search, std::size_t begin, std::size_t end);
   void find_together(const Search& search, std::size_t begin, std::size_t end);
   void find_each(const Search& search, std::size_t begin, std::size_t end);

@@ -15,12 +15,6 @@ namespace dartcast {
 
 namespace {
 
-Box box_of(const SolidElement& e, const SolidMotion& motion) {
-  Box box = way_of(motion.from[e.vertex[0]], motion.to[e.vertex[0]]);
-  for (unsigned i = 1; i < e.count; ++i) box = join(box, way_of(motion.from[e.vertex[i]], motion.to[e.vertex[i]]));
-  return box;
-}
-
 // An element as a wall: an edge or a point repeats its last corner.
 NearWall wall_of(const SolidElement& e, const SolidMotion& motion) {
   NearWall wall;
@@ -38,13 +32,13 @@ std::vector<ElementTouch> SolidPairFinder::find(std::span<const SolidElement> so
                                                 std::span<const SolidElement> other, const SolidMotion& motion) {
   constexpr std::size_t elements_in_one_query = 16;
   std::vector<Box> boxes(other.size());
-  std::transform(other.begin(), other.end(), boxes.begin(), [&](const auto& e) { return box_of(e, motion); });
+  std::transform(other.begin(), other.end(), boxes.begin(), [&](const auto& e) { return way_of(e, motion); });
   const BoxTree tree(std::move(boxes));
   std::vector<ElementTouch> touches;
   for (std::size_t begin = 0; begin < solid.size(); begin += elements_in_one_query) {
     const auto group = solid.subspan(begin, std::min(elements_in_one_query, solid.size() - begin));
-    Box box = box_of(group[0], motion);
-    for (const SolidElement& e : group) box = join(box, box_of(e, motion));
+    Box box = way_of(group[0], motion);
+    for (const SolidElement& e : group) box = join(box, way_of(e, motion));
     std::vector<std::size_t> near;
     if (motion.margin > 0.0) box = widened(box, motion.margin);
     tree.query(box, [&](std::size_t i) {
