@@ -133,6 +133,8 @@ class Deformation {
   // The effects of edits and pulls, in their order.
   using Later = std::variant<PlacedVertex, Pull>;
 
+  friend class MovingVertices;
+  void at_rest(std::span<Vec3> out) const;  // before the first step
   void add_later(double time, std::span<Vec3> out) const;
 
   std::vector<DeformationStep> steps_;         // axis and direction made unit vectors; without frames

@@ -191,6 +191,11 @@ void Deformation::positions(double time, std::span<Vec3> out, Threads threads) c
   add_later(time, out);
 }
 
+void Deformation::at_rest(std::span<Vec3> out) const {
+  std::copy(rest_.begin(), rest_.end(), out.begin());
+  add_later(0.0, out);
+}
+
 void Deformation::update_after_edit(const ComplexEditReport& edit, std::size_t size) {
   later_.insert(later_.end(), edit.placed.begin(), edit.placed.end());
   size_ = size;

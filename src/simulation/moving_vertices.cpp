@@ -37,7 +37,14 @@ void MovingVertices::load(std::uint64_t steps) const {
 }
 
 void MovingVertices::move_to(std::uint64_t steps) {
-  if (!deformation_ || steps == 0) return;
+  if (!deformation_) return;
+  if (steps == 0) {
+    for (int i = 0; i < 2; ++i) {  // where they stand now, and where they stood before
+      deformation_->at_rest(environment_.next_positions());
+      environment_.move();
+    }
+    return;
+  }
   deformation_->positions(static_cast<double>(steps) * dt_, environment_.next_positions(), environment_.threads());
   environment_.move();
 }
