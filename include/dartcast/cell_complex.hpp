@@ -23,6 +23,10 @@
 
 namespace dartcast {
 
+namespace detail {
+class PeriodicFaces;
+}
+
 // Steiner points: vertices that are combinations of others.
 
 /// The vertices of a complex that are combinations of others, with their weights.
@@ -75,12 +79,15 @@ class CellComplex {
  public:
   /// Builds the map, finds Steiner points if cells need them, and checks every simplex. Cells that no Steiner point
   /// makes positive are listed in invalid_cells(). The complex can still be used; particles in these cells are held.
-  /// Preconditions and errors as for CombinatorialMap. Cost: linear.
+  /// Preconditions and errors as for CombinatorialMap. Throws InvalidMesh if a face of a periodic pair has no partner;
+  /// it says where the face is. Cost: linear.
   explicit CellComplex(const MeshData& mesh, Threads threads = {});
 
   [[nodiscard]] const CombinatorialMap& map() const { return map_; }
   [[nodiscard]] CombinatorialMap& map() { return map_; }
   [[nodiscard]] const std::vector<InvalidCell>& invalid_cells() const { return invalid_; }
+  /// The faces of the mesh's periodic pairs, and their partners; null if there are none.
+  [[nodiscard]] const detail::PeriodicFaces* periodic() const { return periodic_.get(); }
 
   /// Positions of all vertices: the mesh's points (in the mesh's order), then Steiner points, then vertices that edits
   /// made. Edits may also use the numbers of removed vertices again.
@@ -135,6 +142,7 @@ class CellComplex {
   AlignedVector<Vec3> back_;  // empty until the first move
   std::vector<InvalidCell> invalid_;
   std::uint64_t simplex_count_ = 0;
+  std::shared_ptr<const detail::PeriodicFaces> periodic_;
 };
 
 // A complex as a mesh again: for output, and to continue elsewhere.

@@ -1,6 +1,7 @@
 // Contacts: which walls a particle meets, where and when, and how the walls move there.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -47,10 +48,26 @@ struct Contact {
   Vec3 unused;             ///< the remaining part of `displacement`, relative to the wall
 };
 
+/// A particle that passes from a wall face of a periodic pair to the face's partner (PeriodicPair,
+/// dartcast/mesh_data.hpp). It is no contact.
+struct PeriodicCrossing {
+  std::uint32_t particle = 0;
+  std::uint16_t pair = 0;      ///< its number in MeshData::periodic
+  bool back = false;           ///< from b to a
+  std::uint32_t contacts = 0;  ///< number of the particle's contacts in this step before it
+  double time = 0.0;           ///< fraction of the step, in [0, 1]
+  CellFace from;               ///< the face that it leaves through, in its cell
+  CellFace to;                 ///< the partner
+  Vec3 point;                  ///< where the particle is then, at the partner
+  /// Rows of the rotation that takes vectors from one side to the other; ones on the diagonal for a translation.
+  std::array<Vec3, 3> turn = {Vec3{1.0, 0.0, 0.0}, Vec3{0.0, 1.0, 0.0}, Vec3{0.0, 0.0, 1.0}};
+};
+
 /// Contacts of a batch: by particle, then by time.
 struct ContactList {
   std::vector<Contact> contacts;
   std::vector<WallHit> walls;
+  std::vector<PeriodicCrossing> crossings;  ///< by particle, then by time; empty without periodic pairs
 
   [[nodiscard]] std::span<const WallHit> walls_of(const Contact& c) const {
     return {walls.data() + c.first_wall, c.wall_count};
@@ -62,6 +79,7 @@ struct ContactList {
   void clear() {
     contacts.clear();
     walls.clear();
+    crossings.clear();
   }
   /// Adds a list whose particles come after those here.
   void append(const ContactList& other);
@@ -85,6 +103,10 @@ struct AfterContact {
 /// unused displacement.
 using ContactCallback =
     std::function<AfterContact(const Contact&, std::span<const WallHit> walls, std::span<const WallHit> earlier)>;
+
+/// Is called at each periodic crossing, before the particle goes on: a response that knows velocities turns them here. It
+/// is called from several threads at once for different particles. It must not throw.
+using CrossingCallback = std::function<void(const PeriodicCrossing&)>;
 
 /// Decides what follows the contacts of a round: the next contact of each particle that still has one. It gets them by
 /// particle, at most one for each; ContactList::walls_of() and earlier_walls_of() give their walls. It writes the answer

@@ -210,7 +210,8 @@ class Environment {
   [[nodiscard]] std::span<Vec3> next_positions();
   /// Makes the positions written current, at no cost per cell. Before the next move, every set of particles must be
   /// advanced once, or follow an edit made after this move with update_after_edit(). Targets of advance() are relative
-  /// to positions before the move.
+  /// to positions before the move. Throws InvalidArgument, nothing moved, if a corner of a periodic pair comes farther
+  /// off its partner than PeriodicPair::tolerance allows; it names both vertices.
   void move();
   /// Copies new positions of all the mesh's points, then move(). Throws InvalidArgument, nothing moved, if the
   /// number does not match, or in the plane a z is not 0.
@@ -292,6 +293,9 @@ class Environment {
   /// The step that a particle would take to a target, as a replay. Throws as trace().
   [[nodiscard]] StepReplay record(const Particles& particles, std::size_t particle, const Vec3& target,
                                   const ContactCallback& respond = {}, const StepOptions& options = {}) const;
+
+  /// Calls this at each periodic crossing in later steps by advance() and advance_in_rounds(). An empty one ends this.
+  void set_crossing_callback(CrossingCallback crossed);
 
   /// Adds all later steps by advance() to a tally of complex(); null ends this. It must outlive its use, and follow each
   /// edit: advance() throws InvalidArgument if it has no place for a cell. `numbers`: how often to add each particle's

@@ -38,6 +38,23 @@ struct DataArray {
   std::vector<double> values;
 };
 
+/// Two patches that lead to each other: a particle that leaves through `a` enters through `b`, and the other way round. A
+/// motion takes the points of a to those of b: a rotation about a line, then a translation. Each wall face of a has a
+/// partner among those of b, with the same corners.
+struct PeriodicPair {
+  std::string a;  ///< names of two patches
+  std::string b;
+  Vec3 translate{};
+  Vec3 axis{};         ///< of the rotation, of any length; zero: there is none
+  Vec3 centre{};       ///< a point of the rotation's line
+  double angle = 0.0;  ///< degrees, counterclockwise as seen against the axis
+  /// How far a corner may be off its partner, as a share of the diagonal of the box around a; above 0, up to 0.1. It only
+  /// chooses the partners.
+  double tolerance = 1e-6;
+
+  bool operator==(const PeriodicPair&) const = default;
+};
+
 /// Points and cells. Units are SI by convention (metres); nothing in the library depends on it.
 ///
 /// Corners of a positive cell:
@@ -73,6 +90,8 @@ struct MeshData {
   /// Tags of patches whose faces are walls although two cells have them, as OpenFOAM's baffles. If both cells' sides
   /// are patch faces, each has the corners as its cell has them.
   std::vector<std::int32_t> baffle_tags;
+
+  std::vector<PeriodicPair> periodic;  ///< pairs of patches; a patch is in one pair at most
 
   std::vector<std::uint8_t> free;  ///< 1 free, 0 blocked, per cell; empty: all free
 

@@ -35,7 +35,7 @@ struct Counters {
   std::uint64_t steps_split = 0;  ///< taken in several slices, because the vertices turned or stretched too much
   std::array<std::uint64_t, 3> contacts{};  ///< by kind: vertex, edge, face
   std::uint64_t unfinished =
-      0;  ///< stopped at the last contact allowed in a step, or if the way leads out of the exact range
+      0;  ///< stopped at the last contact or crossing allowed in a step, or if the way leads out of the exact range
 
   Counters& operator+=(const Counters& other) {
     particle_steps += other.particle_steps;
@@ -61,6 +61,9 @@ struct StepOptions {
   double tolerance = 0.05;
   /// Largest number of slices, at least 1. A step that needs more is taken in this many.
   unsigned max_slices = 256;
+  /// Largest number of periodic crossings of a particle in one step, at least 1. A particle that would make more stops at
+  /// the border; Counters::unfinished counts it.
+  unsigned max_crossings = 1024;
 };
 
 /// Throws InvalidArgument, which names the caller and the option, if an option is out of range.

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "bodies/bodies_impl.hpp"
+#include "complex/periodic_faces.hpp"
 
 namespace dartcast {
 
@@ -16,6 +17,7 @@ Bodies::Bodies(Bodies&& other)  // NOLINT(performance-noexcept-move-constructor)
     : impl_(std::make_unique<Impl>(std::move(*other.impl_))) {}
 
 AddBodyResult Bodies::add(std::span<const Vec3> points, const BodyOptions& options) {
+  detail::refuse_periodic(impl_->environment_.complex(), "bodies");
   return impl_->add(points, options);
 }
 const BodiesStep& Bodies::step() { return impl_->step(); }

@@ -8,6 +8,7 @@
 
 #include "catheter/catheter_impl.hpp"
 #include "catheter/transport.hpp"
+#include "complex/periodic_faces.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
 #include "tracking/carry.hpp"
@@ -244,7 +245,8 @@ void Catheter::Impl::take_back() {
 // The public functions.
 
 Catheter::Catheter(Environment& environment, const CatheterOptions& options)
-    : impl_(std::make_unique<Impl>(environment, options)) {}
+    : impl_((detail::refuse_periodic(environment.complex(), "catheters"),
+             std::make_unique<Impl>(environment, options))) {}
 Catheter::~Catheter() = default;
 
 double Catheter::move_with(std::span<const Vec3> positions) { return impl_->move_with(positions); }

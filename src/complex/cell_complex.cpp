@@ -1,8 +1,10 @@
 // Builds a cell complex, and swaps its positions.
 #include "dartcast/cell_complex.hpp"
 
+#include <memory>
 #include <utility>
 
+#include "complex/periodic_faces.hpp"
 #include "complex/steiner_points.hpp"
 #include "dartcast/validity.hpp"
 
@@ -23,6 +25,8 @@ CellComplex::CellComplex(const MeshData& mesh, Threads threads)
     invalid_ = check_validity(map_, front_, threads, all).first;
   }
   for (const Cell c : map_.cells()) simplex_count_ += map_.shape(c).simplices().size();
+  if (!mesh.periodic.empty())
+    periodic_ = std::make_shared<const detail::PeriodicFaces>(mesh.periodic, map_, positions());
 }
 
 std::span<Vec3> CellComplex::next_positions() {

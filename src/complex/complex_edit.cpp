@@ -30,9 +30,10 @@ struct ComplexEdit::Created : detail::CreatedPositions<AlignedVector<Vec3>> {
 };
 
 ComplexEdit::ComplexEdit(CellComplex& complex)
-    : complex_(complex),
-      transaction_(complex.map_),
-      created_(std::make_unique<Created>(transaction_, complex.front_)) {}
+    : complex_(complex), transaction_(complex.map_), created_(std::make_unique<Created>(transaction_, complex.front_)) {
+  if (complex.periodic() != nullptr)
+    throw EditRefused("edit: a scene with periodic pairs cannot be edited: leave the edit or the pairs out");
+}
 
 ComplexEdit::~ComplexEdit() { created_->give_up(); }
 

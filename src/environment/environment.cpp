@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/parallel.hpp"
+#include "complex/periodic_faces.hpp"
 #include "complex/simplex.hpp"
 #include "complex/steiner_points.hpp"
 #include "dartcast/cell_tally.hpp"
@@ -287,6 +288,7 @@ Particles Environment::restored(std::span<const ParticleState> states, std::span
 std::span<Vec3> Environment::next_positions() { return members_->complex.next_positions(); }
 
 void Environment::move() {
+  if (const detail::PeriodicFaces* pairs = complex().periodic()) pairs->check_move(next_positions());
   members_->complex.commit_positions();
   members_->locator.reset();
   ++members_->moves;
@@ -356,7 +358,7 @@ StepReport Environment::advance_by(const MakeDecider& make, Particles& particles
     const std::unique_ptr<detail::StepDecider> decider = make ? make(answer) : nullptr;
     return members_->advance(particles, targets,
                              detail::BatchStepper(complex(), awaits_advance(particles), threads(), options, answer,
-                                                  may_throw, decider.get(), members_->tallied));
+                                                  may_throw, decider.get(), members_->tallied, &members_->crossed));
   };
   return members_->watched(*this, particles, targets, options, respond, take, static_cast<bool>(make));
 }
@@ -368,14 +370,17 @@ StepReport Environment::advance_in_rounds(Particles& particles, std::span<const 
   if (tally() != nullptr)
     throw InvalidArgument("advance_in_rounds: steps in rounds are not added to tallies: use advance()");
   const auto take = [&](const RoundCallback& answer) {
-    return members_->advance(particles, targets,
-                             detail::BatchStepper(complex(), awaits_advance(particles), threads(), options, answer));
+    return members_->advance(
+        particles, targets,
+        detail::BatchStepper(complex(), awaits_advance(particles), threads(), options, answer, &members_->crossed));
   };
   return members_->watched(*this, particles, targets, options, respond, take, false);
 }
 
 void Environment::set_replay_hook(ReplayHook hook) { members_->replay_hook = std::move(hook); }
 const ReplayHook& Environment::replay_hook() const { return members_->replay_hook; }
+
+void Environment::set_crossing_callback(CrossingCallback crossed) { members_->crossed = std::move(crossed); }
 
 void Environment::set_tally(CellTally* tally, std::span<const std::uint64_t> numbers) {
   members_->tallied = {tally, numbers, {}};

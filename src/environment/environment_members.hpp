@@ -53,6 +53,7 @@ struct Environment::Members {
   ComplexEditReport last_edit;
   ReplayHook replay_hook;
   detail::Tallied tallied;
+  CrossingCallback crossed;
   std::unique_ptr<Locator> locator;  ///< of the current positions, made by the first locate()
 };
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/parallel.hpp"
+#include "complex/periodic_faces.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
 #include "solids/audit_solids.hpp"
@@ -166,6 +167,7 @@ SolidSet::SolidSet(Environment& environment) : impl_(std::make_unique<Impl>(envi
 SolidSet::~SolidSet() = default;
 
 SolidPlacement SolidSet::add(const SolidMesh& mesh, std::span<const std::uint32_t> meets) {
+  detail::refuse_periodic(impl_->environment.complex(), "solids");
   return impl_->add(mesh, meets);
 }
 std::size_t SolidSet::size() const { return impl_->longest.size(); }

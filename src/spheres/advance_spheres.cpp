@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
+#include "complex/periodic_faces.hpp"
 #include "dartcast/cell_tally.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/spheres.hpp"
@@ -371,6 +372,7 @@ SphereReport SphereStepper::advance(Environment& environment, Particles& particl
   environment.check_advance(particles, options);
   const bool points_only = std::all_of(radii.begin(), radii.end(), [](double r) { return r == 0.0; });
   if (points_only) return {environment.advance(particles, targets, respond, options), {}};
+  detail::refuse_periodic(environment.complex(), "spheres");
   if (!buffers_) buffers_ = std::make_unique<Buffers>();
   const SphereTally tally(environment, particles, radii, respond, options);
   SphereCall call(*buffers_, environment, particles, radii, targets, respond, options, clearances, tally);

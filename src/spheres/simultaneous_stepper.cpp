@@ -3,6 +3,7 @@
 #include <mutex>
 #include <vector>
 
+#include "complex/periodic_faces.hpp"
 #include "dartcast/combinatorial_map.hpp"
 #include "dartcast/spheres.hpp"
 #include "environment/environment_members.hpp"
@@ -86,6 +87,7 @@ StepReport SimultaneousStepper::advance(Environment& environment, Particles& par
                                         const ContactCallback& respond, const StepOptions& options) {
   if (particles.size() == 0 || !environment.awaits_advance(particles))
     return environment.advance(particles, targets, respond, options);
+  detail::refuse_periodic(environment.complex(), "points that move at the same time as the walls");
   if (!buffers_) buffers_ = std::make_unique<Buffers>();
   // A look at all walls costs some 250 instructions for each, and a search through cells some 6,000 for each point. Before
   // that the walls have to be found among the cells.

@@ -10,6 +10,7 @@ void ContactList::append(const ContactList& other) {
     c.first_wall += shift;
     contacts.push_back(c);
   }
+  crossings.insert(crossings.end(), other.crossings.begin(), other.crossings.end());
 }
 
 }  // namespace dartcast

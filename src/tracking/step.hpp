@@ -27,6 +27,7 @@ struct StepSetting {
   bool moved;
   const StepOptions& options;
   const ContactCallback& respond;
+  const CrossingCallback* crossed = nullptr;  ///< none: nothing is called at crossings
 };
 
 /// Carries particles through one step of a complex. A plain reader of the complex: any number may run at once.
@@ -34,8 +35,9 @@ class Stepper {
  public:
   /// `moved`: the complex's positions have been committed for this step. Targets then are relative to positions before
   /// the move (they are absolute points, computed by the caller from where the particle was).
-  Stepper(const CellComplex& complex, bool moved, const StepOptions& options, const ContactCallback& respond)
-      : setting_{complex, moved, options, respond} {}
+  Stepper(const CellComplex& complex, bool moved, const StepOptions& options, const ContactCallback& respond,
+          const CrossingCallback* crossed = nullptr)
+      : setting_{complex, moved, options, respond, crossed} {}
 
   /// Whether anything responds at walls: else particles stop at the first one.
   [[nodiscard]] bool responds() const { return static_cast<bool>(setting_.respond); }

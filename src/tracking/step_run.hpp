@@ -6,6 +6,7 @@
 //    that have moved may be taken in several time slices.
 // 2. carry, if the mesh has moved: each slice begins with the vertices, which carry the particle along.
 // 3. walk: to the target of the slice, up to a wall. Batches (in_batch) and other ranks (on_way) begin walks, too.
+//    A wall face of a periodic pair is no contact: the particle is put at its partner, and walks on from there.
 // 4. contact: describe it, put the particle there, ask for an answer, aim at the new target, and walk again.
 // 5. done: count.
 //
@@ -21,6 +22,7 @@
 #include "base/elementary.hpp"
 #include "dartcast/error.hpp"
 #include "tracking/contact_geometry.hpp"
+#include "tracking/periodic_passage.hpp"
 #include "tracking/step.hpp"
 
 namespace dartcast::detail {
@@ -67,6 +69,8 @@ class StepRun {
         moved_(setting.moved),
         options_(setting.options),
         respond_(setting.respond),
+        crossed_(setting.crossed),
+        pairs_(setting.complex.periodic()),
         s_(step),
         state_(particle.state),
         weights_(particle.weights),
@@ -256,6 +260,12 @@ class StepRun {
         return true;
       }
       driver_.walked(space, w, p, q, s_.interval.begin, s_.interval.end);
+      if (!Driver::travels && pairs_ != nullptr && w.end == WalkEnd::wall) {
+        if (const PeriodicPartner* const partner = periodic_end(space, *pairs_, w, p, q)) {
+          if (!cross(space, w, p, q, impact, *partner)) return true;
+          continue;
+        }
+      }
       if (w.end == WalkEnd::arrived) {
         state_.put(w.simplex, q);
         state_.touching_count = 0;
@@ -296,6 +306,76 @@ class StepRun {
     return state_.position;
   }
 
+  // --- periodic faces
+
+  // Puts the particle at the partner of the face that the walk passes, and aims it at the image of the target. Returns
+  // false if it goes no further.
+  template <class Positions>
+  [[gnu::noinline]] bool cross(const Space<Positions, N>& space, const Walk& w, const Vec3& p, const Vec3& q,
+                               const WallImpact* impact, const PeriodicPartner& to) {
+    const Simplex leaving = space.corners(w.wall_simplex);
+    const double t =
+        impact != nullptr
+            ? impact->fraction
+            : contact_geometry(complex_.map(), leaving, facet_plane(leaving, w.wall_facet), w, p, q).fraction;
+    const Vec3 x = w.at_start ? p : flushed(p + (q - p) * t);
+    PeriodicEntry<N> entry = periodic_entry(space, *pairs_, to, w, x, q);
+    if (!positive(entry.corners)) {  // as where a walk comes to such a cell
+      s_.result.held = true;
+      s_.result.invalid_cell = entry.simplex.cell;
+      return false;
+    }
+    place(space, entry);
+    // It entered: rounding must not lead it out again.
+    WallPlanes<N> planes;
+    planes.add(flushed_plane(entry.plane));
+    lift_off(planes, state_.position, entry.target, lift_doublings);
+    entry.target = flushed(entry.target);
+    note(w, to, t);
+    s_.slice_target = entry.target;
+    const Vec3 unused = s_.slice_target - state_.position + s_.interval.later;
+    if (!in_exact_range(s_.slice_target)) return static_cast<void>(stop_out_of_range(unused)), false;
+    if (++s_.crossing_count <= options_.max_crossings) return true;
+    ++counters_.unfinished;
+    stop(unused);
+    return false;
+  }
+
+  // As at a contact: near the place, inside the simplex.
+  template <class Positions>
+  void place(const Space<Positions, N>& space, const PeriodicEntry<N>& entry) {
+    state_.touching_count = 0;
+    if (const auto proved = proved_inside(entry.corners, entry.point)) return state_.put(entry.simplex, *proved);
+    const SimplexPlacement placed = next_to(space, entry.simplex, entry.corners, entry.on_plane);
+    state_.put(placed.simplex, placed.position);
+  }
+
+  // The time of a crossing at the fraction t of the way; what is left of the step is turned. Walls met before are those
+  // of another image: nothing joins them from now on.
+  void note(const Walk& w, const PeriodicPartner& to, double t) {
+    TimeInterval& i = s_.interval;
+    const RigidMotion& motion = pairs_->motion(to);
+    i.begin += t * (i.end - i.begin);
+    i.later = motion.vector(i.later);
+    s_.target = flushed(motion.point(s_.target));
+    s_.first_wall = s_.first_here = static_cast<std::uint32_t>(contacts_.walls.size());
+    const CellView cell = complex_.map().view(w.wall_simplex.cell);
+    const CellFace from = {w.wall_simplex.cell,
+                           cell.shape().simplices()[w.wall_simplex.simplex].across[w.wall_facet].face()};
+    contacts_.crossings.push_back({s_.particle, to.pair, to.back, s_.contact_count, std::max(i.begin, s_.last_time),
+                                   from, to.face, state_.position, motion.rows()});
+    if (crossed_ != nullptr && *crossed_) (*crossed_)(contacts_.crossings.back());
+    driver_.put(state_, i.begin);
+  }
+
+  // Faces of periodic pairs are no walls of a contact beside them. The wall that was met stays.
+  [[gnu::cold]] void drop_periodic_walls(Contact& contact) {
+    const auto first = contacts_.walls.begin() + contact.first_wall;
+    const auto is_periodic = [&](const WallHit& wall) { return pairs_->partner(wall.face) != nullptr; };
+    contacts_.walls.erase(std::remove_if(first + 1, contacts_.walls.end(), is_periodic), contacts_.walls.end());
+    contact.wall_count = static_cast<std::uint32_t>(contacts_.walls.size()) - contact.first_wall;
+  }
+
   // --- contact
 
   // Records the contact, and puts the particle there. `impact`: if a batch has computed it.
@@ -334,6 +414,7 @@ class StepRun {
     const Simplex corners = space.corners(w.wall_simplex);
     const WallPlane wall = flushed_plane(facet_plane(corners, w.wall_facet));
     const double t = describe_contact(space, w, corners, wall, p, q, contact, contacts_);
+    if (pairs_ != nullptr) drop_periodic_walls(contact);
     place(space, w, corners, p, contact);
     touch(state_, contacts_.walls_of(contact));
     if (moved_)
@@ -469,6 +550,8 @@ class StepRun {
   bool moved_;
   const StepOptions& options_;
   const ContactCallback& respond_;
+  const CrossingCallback* crossed_;
+  const PeriodicFaces* pairs_;
   StepState& s_;
   ParticleState& state_;
   Weights& weights_;

@@ -61,9 +61,10 @@ struct StepState {
   std::uint32_t particle = 0;
   // Contacts so far, in the list that they are added to.
   std::uint32_t contact_count = 0;
-  std::uint32_t first_wall = 0;  ///< of this particle in this step
-  std::uint32_t first_here = 0;  ///< of those at the place of the last contact
-  double last_time = -1.0;       ///< of the last contact
+  std::uint32_t crossing_count = 0;  ///< of faces of periodic pairs
+  std::uint32_t first_wall = 0;      ///< of this particle in this step
+  std::uint32_t first_here = 0;      ///< of those at the place of the last contact
+  double last_time = -1.0;           ///< of the last contact
 
   TestCounts tests;
   StepResult result;

@@ -27,16 +27,17 @@ ContactList by_particle(std::vector<ContactList> rounds) {
   all.contacts.reserve(contact_count);
   std::vector<std::size_t> next(rounds.size());
   for (const Contact& first : rounds.front().contacts) {
-    const auto first_wall = static_cast<std::uint32_t>(all.walls.size());
     std::span<const WallHit> walls;
+    const auto add_walls = [&] { all.walls.insert(all.walls.end(), walls.begin(), walls.end()); };
     for (std::size_t k = 0; k < rounds.size(); ++k) {
       const std::vector<Contact>& contacts = rounds[k].contacts;
       if (next[k] == contacts.size() || contacts[next[k]].particle != first.particle) break;
       Contact& contact = all.contacts.emplace_back(contacts[next[k]++]);
+      if (contact.earlier < walls.size()) add_walls();  // a periodic crossing has ended what joins
       walls = all_walls_of(rounds[k], contact);
-      contact.first_wall = first_wall + contact.earlier;
+      contact.first_wall = static_cast<std::uint32_t>(all.walls.size()) + contact.earlier;
     }
-    all.walls.insert(all.walls.end(), walls.begin(), walls.end());
+    add_walls();
   }
   return all;
 }
@@ -52,14 +53,14 @@ void merge_by_particle(std::vector<Entry>& all, const std::vector<Entry>& more) 
 }  // namespace
 
 BatchStepper::BatchStepper(const CellComplex& complex, bool moved, Threads threads, const StepOptions& options,
-                           const RoundCallback& respond)
+                           const RoundCallback& respond, const CrossingCallback* crossed)
     : complex_(complex),
       moved_(moved),
       threads_(threads),
       options_(options),
       may_throw_(true),
       rounds_(&respond),
-      stepper_(complex, moved, options, no_response) {}
+      stepper_(complex, moved, options, no_response, crossed) {}
 
 ChunkSteps BatchStepper::answer(const BatchParticles& particles, std::span<const StepState> waiting,
                                 const ContactList& met, std::span<const AfterContact> after) const {
@@ -80,6 +81,7 @@ ChunkSteps BatchStepper::answer(const BatchParticles& particles, std::span<const
 StepReport BatchStepper::answer_in_rounds(const BatchParticles& particles, ChunkSteps steps) const {
   StepReport report = std::move(steps.report);
   std::vector<ContactList> rounds;
+  std::vector<PeriodicCrossing> crossings = std::move(report.contacts.crossings);
   rounds.push_back(std::move(report.contacts));
   while (!steps.waiting.empty()) {
     std::vector<AfterContact> after(steps.waiting.size());
@@ -87,10 +89,12 @@ StepReport BatchStepper::answer_in_rounds(const BatchParticles& particles, Chunk
     steps = answer(particles, steps.waiting, rounds.back(), after);
     merge_by_particle(report.held, steps.report.held);
     merge_by_particle(report.stopped, steps.report.stopped);
+    merge_by_particle(crossings, steps.report.contacts.crossings);
     report.counters += steps.report.counters;
     if (!steps.report.contacts.contacts.empty()) rounds.push_back(std::move(steps.report.contacts));
   }
   report.contacts = by_particle(std::move(rounds));
+  report.contacts.crossings = std::move(crossings);
   return report;
 }
 

@@ -113,7 +113,8 @@ BatchScene BatchStepper::scene_of(ParticleCache& cache, std::size_t count) const
 
 StepReport BatchStepper::step_all(const BatchParticles& particles, std::span<const Vec3> targets) const {
   BatchScene scene = scene_of(particles.cache, targets.size());
-  scene.stops = !stepper_.responds() && rounds_ == nullptr && decider_ == nullptr && tallied_.tally == nullptr;
+  scene.stops = !stepper_.responds() && rounds_ == nullptr && decider_ == nullptr && tallied_.tally == nullptr &&
+                complex_.periodic() == nullptr;
   std::vector<ChunkSteps> chunks(chunk_count(targets.size(), chunk));
   parallel_for(targets.size(), chunk, threads_, [&](std::size_t begin, std::size_t end) {
     ChunkSteps& steps = chunks[begin / chunk];

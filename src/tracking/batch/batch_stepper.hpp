@@ -70,10 +70,10 @@ ChunkSteps joined(std::vector<ChunkSteps> chunks);
 class BatchStepper {
  public:
   /// `moved`: as for Stepper. `may_throw`: whether `respond` may. `decider`: takes the steps that may meet a wall; none:
-  /// Stepper does. The references must outlive the stepper.
+  /// Stepper does. `crossed`: as for Stepper. The references must outlive the stepper.
   BatchStepper(const CellComplex& complex, bool moved, Threads threads, const StepOptions& options,
                const ContactCallback& respond, bool may_throw, const StepDecider* decider = nullptr,
-               const Tallied& tallied = {})
+               const Tallied& tallied = {}, const CrossingCallback* crossed = nullptr)
       : complex_(complex),
         moved_(moved),
         threads_(threads),
@@ -81,10 +81,10 @@ class BatchStepper {
         may_throw_(may_throw),
         decider_(decider),
         tallied_(tallied),
-        stepper_(complex, moved, options, respond) {}
+        stepper_(complex, moved, options, respond, crossed) {}
   /// With a response in rounds, which is not empty.
   BatchStepper(const CellComplex& complex, bool moved, Threads threads, const StepOptions& options,
-               const RoundCallback& respond);
+               const RoundCallback& respond, const CrossingCallback* crossed = nullptr);
 
   /// Advances each particle to its target. Throws InvalidArgument if the numbers differ, or a target is not finite, out
   /// of the exact range or not in the plane. Throws what a response throws. Nothing is changed then. Cost: some 20 ns a

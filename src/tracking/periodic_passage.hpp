@@ -1,0 +1,135 @@
+// Through a face of a periodic pair to its partner.
+//
+// The walk decides on the side that it leaves whether it passes, exactly. Here the crossing is handed over: the face, and
+// the place in it by the weights of its corners. So the partner's corners may be rounded, and no particle is lost.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "complex/periodic_faces.hpp"
+#include "tracking/contact_geometry.hpp"
+
+namespace dartcast::detail {
+
+/// The pair's face that a facet is part of leads there; null if it is in no pair.
+inline const PeriodicPartner* partner_of(const PeriodicFaces& pairs, SimplexId id, const CellView& cell,
+                                         unsigned facet) {
+  const Across across = cell.shape().simplices()[id.simplex].across[facet];
+  return across.outer() ? pairs.partner(CellFace{id.cell, across.face()}) : nullptr;
+}
+
+/// Decides what a walk that has ended at a wall meets, and changes its end to that:
+///  - If it ends on a periodic face, it has arrived, unless q lies on a wall, too.
+///  - If it starts on a wall that it meets, and p lies on a periodic face that q is strictly beyond, it passes that.
+/// Returns the partner of the face that it passes; null if it meets a wall, or has arrived.
+template <class Positions, std::size_t N>
+const PeriodicPartner* periodic_end(const Space<Positions, N>& space, const PeriodicFaces& pairs, Walk& w,
+                                    const Vec3& p, const Vec3& q) {
+  const CellView cell = space.map->view(w.wall_simplex.cell);
+  const PeriodicPartner* partner = partner_of(pairs, w.wall_simplex, cell, w.wall_facet);
+  if (w.at_end && partner != nullptr) {
+    w.end = WalkEnd::arrived;
+    const CellView last = space.map->view(w.simplex.cell);
+    const Feature around = feature_of<N>(last, last.shape().simplices()[w.simplex.simplex], w.zeros);
+    if (around.count == N - 1) return nullptr;
+    search_walls<N>(*space.map, w.simplex, around,
+                    [&](SimplexId id, const CellView& at, const ImplicitSimplex&, std::uint16_t facet) {
+                      if (partner_of(pairs, id, at, facet) != nullptr) return true;
+                      w.end = WalkEnd::wall;
+                      w.wall_simplex = id;
+                      w.wall_facet = static_cast<std::uint8_t>(facet);
+                      return false;
+                    });
+    return nullptr;
+  }
+  if (!w.at_start || partner != nullptr) return partner;
+  const ImplicitSimplex& s = cell.shape().simplices()[w.wall_simplex.simplex];
+  const Feature around = feature_of<N>(cell, s, zeros_of(space.corners(cell, s), p));
+  if (around.count == N - 1) return nullptr;
+  search_walls<N>(*space.map, w.wall_simplex, around,
+                  [&](SimplexId id, const CellView& at, const ImplicitSimplex& of, std::uint16_t facet) {
+                    const PeriodicPartner* const way = partner_of(pairs, id, at, facet);
+                    if (way == nullptr || orient_facet(space.corners(at, of), facet, q) != Sign::negative) return true;
+                    partner = way;
+                    w.wall_simplex = id;
+                    w.wall_facet = static_cast<std::uint8_t>(facet);
+                    return false;
+                  });
+  return partner;
+}
+
+/// Where a particle enters: a triangle of the partner, the simplex behind it, and images of the place and the target.
+template <std::size_t N>
+struct PeriodicEntry {
+  SimplexId simplex;
+  std::array<Vec3, N> corners;
+  WallPlane plane;
+  Vec3 point;     ///< rounded: it may be off the triangle
+  Vec3 on_plane;  ///< the point of the triangle next to it, rounded
+  Vec3 target;
+};
+
+/// The image of a point is that of the motion, moved by the differences between the partner's corners and the images of
+/// the face's own. These are 0 if the corners are exact.
+template <class Positions, std::size_t N>
+Vec3 shift_at(const Space<Positions, N>& space, const PeriodicFaces& pairs, const PeriodicPartner& to, const Walk& w,
+              const Vec3& x) {
+  const CellView cell = space.map->view(w.wall_simplex.cell);
+  const ImplicitSimplex& s = cell.shape().simplices()[w.wall_simplex.simplex];
+  const std::array<Vec3, N> v = space.corners(cell, s);
+  const std::array<double, N - 1> weight = weights_in(v, facet_plane(v, w.wall_facet), x);
+  double sum = 0.0;
+  for (const double each : weight) sum += each;
+  const bool known = sum > 0.0 && std::isfinite(sum);
+  Vec3 shift;
+  for (unsigned i = 0; i < N - 1; ++i) {
+    const unsigned corner = facet_corner<N>(w.wall_facet, i);
+    const Vertex partner = pairs.partner(to, cell.vertex(s.vertex[corner]));
+    if (!partner.valid()) continue;
+    Vec3 off = space.positions[partner] - pairs.motion(to).point(v[corner]);
+    if constexpr (N == 3) off.z = 0.0;
+    shift += off * (known ? weight[i] / sum : 1.0 / (N - 1.0));
+  }
+  return shift;
+}
+
+/// `x`: where the walk passes the face, rounded; `q`: its target.
+template <class Positions, std::size_t N>
+PeriodicEntry<N> periodic_entry(const Space<Positions, N>& space, const PeriodicFaces& pairs, const PeriodicPartner& to,
+                                const Walk& w, const Vec3& x, const Vec3& q) {
+  const Vec3 shift = shift_at(space, pairs, to, w, x);
+  const RigidMotion& motion = pairs.motion(to);
+  PeriodicEntry<N> entry{};
+  entry.point = flushed(motion.point(x) + shift);
+  entry.target = flushed(motion.point(q) + shift);
+  const CellView cell = space.map->view(to.face.cell);
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::uint16_t t = 0; t < cell.shape().triangle_count(to.face.face); ++t) {
+    const Across behind = cell.shape().entry(to.face.face, t);
+    const std::array<Vec3, N> v = space.corners(cell, cell.shape().simplices()[behind.index]);
+    const WallPlane plane = facet_plane(v, behind.place);
+    const std::array<double, N - 1> weight = weights_in(v, plane, entry.point);
+    double sum = 0.0;
+    Vec3 on_plane;
+    for (unsigned i = 0; i < N - 1; ++i) {
+      sum += weight[i];
+      on_plane += v[facet_corner<N>(behind.place, i)] * weight[i];
+    }
+    on_plane = sum > 0.0 ? on_plane * (1.0 / sum) : plane.a;
+    const double off = norm(on_plane - entry.point);
+    if (t > 0 && !(off < nearest)) continue;
+    nearest = off;
+    entry.simplex = {to.face.cell, behind.index};
+    entry.corners = v;
+    entry.plane = plane;
+    entry.on_plane = on_plane;
+  }
+  return entry;
+}
+
+}  // namespace dartcast::detail
