@@ -6,13 +6,14 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "complex/periodic_faces.hpp"
 #include "tracking/contact_geometry.hpp"
+#include "tracking/representable_point.hpp"
 
 namespace dartcast::detail {
 
@@ -21,46 +22,6 @@ inline const PeriodicPartner* partner_of(const PeriodicFaces& pairs, SimplexId i
                                          unsigned facet) {
   const Across across = cell.shape().simplices()[id.simplex].across[facet];
   return across.outer() ? pairs.partner(CellFace{id.cell, across.face()}) : nullptr;
-}
-
-/// Decides what a walk that has ended at a wall meets, and changes its end to that:
-///  - If it ends on a periodic face, it has arrived, unless q lies on a wall, too.
-///  - If it starts on a wall that it meets, and p lies on a periodic face that q is strictly beyond, it passes that.
-/// Returns the partner of the face that it passes; null if it meets a wall, or has arrived.
-template <class Positions, std::size_t N>
-const PeriodicPartner* periodic_end(const Space<Positions, N>& space, const PeriodicFaces& pairs, Walk& w,
-                                    const Vec3& p, const Vec3& q) {
-  const CellView cell = space.map->view(w.wall_simplex.cell);
-  const PeriodicPartner* partner = partner_of(pairs, w.wall_simplex, cell, w.wall_facet);
-  if (w.at_end && partner != nullptr) {
-    w.end = WalkEnd::arrived;
-    const CellView last = space.map->view(w.simplex.cell);
-    const Feature around = feature_of<N>(last, last.shape().simplices()[w.simplex.simplex], w.zeros);
-    if (around.count == N - 1) return nullptr;
-    search_walls<N>(*space.map, w.simplex, around,
-                    [&](SimplexId id, const CellView& at, const ImplicitSimplex&, std::uint16_t facet) {
-                      if (partner_of(pairs, id, at, facet) != nullptr) return true;
-                      w.end = WalkEnd::wall;
-                      w.wall_simplex = id;
-                      w.wall_facet = static_cast<std::uint8_t>(facet);
-                      return false;
-                    });
-    return nullptr;
-  }
-  if (!w.at_start || partner != nullptr) return partner;
-  const ImplicitSimplex& s = cell.shape().simplices()[w.wall_simplex.simplex];
-  const Feature around = feature_of<N>(cell, s, zeros_of(space.corners(cell, s), p));
-  if (around.count == N - 1) return nullptr;
-  search_walls<N>(*space.map, w.wall_simplex, around,
-                  [&](SimplexId id, const CellView& at, const ImplicitSimplex& of, std::uint16_t facet) {
-                    const PeriodicPartner* const way = partner_of(pairs, id, at, facet);
-                    if (way == nullptr || orient_facet(space.corners(at, of), facet, q) != Sign::negative) return true;
-                    partner = way;
-                    w.wall_simplex = id;
-                    w.wall_facet = static_cast<std::uint8_t>(facet);
-                    return false;
-                  });
-  return partner;
 }
 
 /// Where a particle enters: a triangle of the partner, the simplex behind it, and images of the place and the target.
@@ -130,6 +91,82 @@ PeriodicEntry<N> periodic_entry(const Space<Positions, N>& space, const Periodic
     entry.on_plane = on_plane;
   }
   return entry;
+}
+
+/// The way round a wall through periodic faces: the first facet that a segment passes which starts at p, on walls. p has an
+/// image at each periodic face that holds it, and these have images, too. The segment can start if it can at one of
+/// them. Without such an image the facet is one that q is strictly beyond and whose image of p is rounded; nothing if
+/// there is none. `at`: a free simplex that holds p. Cost: that of the stars of the images.
+template <class Positions, std::size_t N>
+std::optional<SimplexFacet> way_round(const Space<Positions, N>& space, const PeriodicFaces& pairs, SimplexId at,
+                                      const Vec3& p, const Vec3& q) {
+  constexpr std::size_t most_images = 64;
+  struct Image {
+    SimplexId simplex;
+    Vec3 p, q;
+    SimplexFacet first;
+  };
+  std::vector<Image> images{{at, p, q, {}}};
+  std::optional<SimplexFacet> beyond;
+  TestCounts uncounted;
+  for (std::size_t next = 0; next < images.size() && images.size() < most_images; ++next) {
+    const Image here = images[next];
+    if (next > 0 && simplex_towards(space, here.simplex, here.p, here.q, uncounted).valid()) return here.first;
+    const CellView of_here = space.map->view(here.simplex.cell);
+    const ImplicitSimplex& simplex = of_here.shape().simplices()[here.simplex.simplex];
+    const Feature around = feature_of<N>(of_here, simplex, zeros_of(space.corners(of_here, simplex), here.p));
+    if (around.count >= N - 1) continue;
+    const auto pass_wall = [&](SimplexId id, const CellView& cell, const ImplicitSimplex& s, std::uint16_t facet) {
+      const PeriodicPartner* const to = partner_of(pairs, id, cell, facet);
+      if (to == nullptr) return true;
+      Walk through;
+      through.wall_simplex = id;
+      through.wall_facet = static_cast<std::uint8_t>(facet);
+      const PeriodicEntry<N> entry = periodic_entry(space, pairs, *to, through, here.p, here.q);
+      const auto is_known = [&](const Image& i) { return i.simplex.cell == entry.simplex.cell && i.p == entry.point; };
+      if (!in_closed_simplex(entry.corners, entry.point)) {
+        const bool leaves = next == 0 && orient_facet(space.corners(cell, s), facet, q) == Sign::negative;
+        if (leaves && !beyond) beyond = SimplexFacet{id, facet};
+      } else if (std::none_of(images.begin(), images.end(), is_known)) {
+        images.push_back({entry.simplex, entry.point, entry.target, next == 0 ? SimplexFacet{id, facet} : here.first});
+      }
+      return true;
+    };
+    search_walls<N>(*space.map, here.simplex, around, pass_wall);
+  }
+  return beyond;
+}
+
+/// Decides what a walk that has ended at a wall meets, and changes its end to that:
+///  - If it ends on a periodic face, it has arrived, unless q lies on a wall, too.
+///  - If it starts on a wall that it meets, it passes a periodic face that holds p, if it can start there (way_round()).
+/// Returns the partner of the face that it passes; null if it meets a wall, or has arrived.
+template <class Positions, std::size_t N>
+const PeriodicPartner* periodic_end(const Space<Positions, N>& space, const PeriodicFaces& pairs, Walk& w,
+                                    const Vec3& p, const Vec3& q) {
+  const CellView cell = space.map->view(w.wall_simplex.cell);
+  const PeriodicPartner* partner = partner_of(pairs, w.wall_simplex, cell, w.wall_facet);
+  if (w.at_end && partner != nullptr) {
+    w.end = WalkEnd::arrived;
+    const CellView last = space.map->view(w.simplex.cell);
+    const Feature around = feature_of<N>(last, last.shape().simplices()[w.simplex.simplex], w.zeros);
+    if (around.count == N - 1) return nullptr;
+    search_walls<N>(*space.map, w.simplex, around,
+                    [&](SimplexId id, const CellView& at, const ImplicitSimplex&, std::uint16_t facet) {
+                      if (partner_of(pairs, id, at, facet) != nullptr) return true;
+                      w.end = WalkEnd::wall;
+                      w.wall_simplex = id;
+                      w.wall_facet = static_cast<std::uint8_t>(facet);
+                      return false;
+                    });
+    return nullptr;
+  }
+  if (!w.at_start || partner != nullptr) return partner;
+  const std::optional<SimplexFacet> way = way_round(space, pairs, w.wall_simplex, p, q);
+  if (!way) return nullptr;
+  w.wall_simplex = way->simplex;
+  w.wall_facet = static_cast<std::uint8_t>(way->facet);
+  return partner_of(pairs, w.wall_simplex, space.map->view(w.wall_simplex.cell), w.wall_facet);
 }
 
 }  // namespace dartcast::detail

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -52,13 +53,21 @@ struct Twins {
   void add(std::span<const Vec3> places) {
     for (const Vec3& x : places) {
       const Location here = one.locate(x);
-      if (here.place != Place::free || all.locate(x).place != Place::free) continue;
+      const Location there = all.locate(x);
+      if (here.place != Place::free || there.place != Place::free) continue;
+      // Walls may part the cells at a point of the border: both must start in the same one.
+      if (one.map().source(here.simplex.cell) + first() != all.map().source(there.simplex.cell)) continue;
       one.add(ones, {&x, 1});
       all.add(alls, {&x, 1});
     }
     images.assign(ones.size(), {});
   }
 
+  // The first cell of the copy that is not moved.
+  [[nodiscard]] std::uint32_t first() const {
+    const auto wide = [&](std::size_t a) { return high[a] - low[a] + 1; };
+    return cells * static_cast<std::uint32_t>(-low[0] + wide(0) * (-low[1] + wide(1) * -low[2]));
+  }
   [[nodiscard]] Vec3 unwrapped(std::size_t i) const {
     const auto& n = images[i];
     return ones[i].position + Vec3{n[0] * size.x, n[1] * size.y, n[2] * size.z};
@@ -130,6 +139,44 @@ TEST(Periodic, LatticeStepsEndAtTheBitsOfARepeatedBox) {
   expect_same_bits(true, CellType::tetrahedron, particles, 10, 2);
 }
 
+// Steps from and to the lattice among obstacles that reach the border. They stop at the first wall: at the same one, at the
+// same time.
+TEST(Periodic, LatticeStepsStopAtTheWallsOfARepeatedBox) {
+  const std::array<std::uint32_t, 3> cubes = {3, 2, 2};
+  Random random(4);
+  std::size_t contacts = 0;
+  for (std::uint64_t seed = 1; seed <= test::scaled<std::uint64_t>(4, 100); ++seed) {
+    const CellType type = seed % 2 == 0 ? CellType::hexahedron : CellType::tetrahedron;
+    Twins twins(periodic_box({.cells = cubes, .type = type, .blocked_share = 0.4, .seed = seed}, 3), cubes, {2, 2, 2});
+    twins.add(lattice_points(random, cubes, test::scaled<std::size_t>(1000, 2000)));
+    std::vector<Vec3> targets;
+    for (std::size_t i = 0; i < twins.ones.size(); ++i)
+      targets.push_back(twins.ones[i].position +
+                        Vec3{lattice(random, -3, 4), lattice(random, -2, 3), lattice(random, -2, 3)});
+    const StepReport one = twins.one.advance(twins.ones, targets);
+    const StepReport all = twins.all.advance(twins.alls, targets);
+    count_images(one.contacts, twins.images);
+    contacts += all.contacts.contacts.size();
+    std::vector<double> times(targets.size(), 1.0), others(targets.size(), 1.0);
+    std::vector<bool> grazes(targets.size());  // the shift decides, which is chosen anew at each crossing
+    const auto note = [&](const ContactList& list, std::vector<double>& time) {
+      for (const Contact& c : list.contacts) {
+        time[c.particle] = c.time_of_impact;
+        if (c.kind != Kind::face && c.time_of_impact > 0.0 && c.time_of_impact < 1.0) grazes[c.particle] = true;
+      }
+    };
+    note(one.contacts, times);
+    note(all.contacts, others);
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+      if (grazes[i]) continue;
+      EXPECT_NEAR(times[i], others[i], 1e-9) << "seed " << seed << " particle " << i;
+      EXPECT_LT(norm(twins.unwrapped(i) - twins.alls[i].position), 1e-9) << "seed " << seed << " particle " << i;
+    }
+    test::expect_audited(twins.one.complex(), twins.ones);
+  }
+  EXPECT_GT(contacts, 100U);
+}
+
 // A quarter of a square, whose sides at the axis are a pair, and the whole square.
 Vec3 quarter_turns(Vec3 x, int count) {
   for (int i = 0; i < ((count % 4) + 4) % 4; ++i) x = {-x.y, x.x, x.z};
@@ -176,6 +223,50 @@ TEST(Periodic, QuarterTurnsEndAtTheBitsOfAWholeSquare) {
       ASSERT_EQ(quarter_turns(ones[i].position, -turns[i]), alls[i].position) << "particle " << i << " step " << step;
     test::expect_audited(part.complex(), ones);
   }
+}
+
+// A wedge of 30 degrees around z, with prisms at the axis, stands for a cylinder of twelve sides. Ways are straight there,
+// through the axis, too.
+TEST(Periodic, WedgesStandForAFullTurn) {
+  MeshData wedge;
+  constexpr double ring[] = {1.0, 2.0};
+  const double cosine = std::cos(std::numbers::pi / 12.0);
+  const double sine = std::sin(std::numbers::pi / 12.0);
+  for (const double z : {0.0, 1.0}) {
+    wedge.points.push_back({0.0, 0.0, z});
+    for (const double r : ring) {
+      wedge.points.push_back({r * cosine, -r * sine, z});
+      wedge.points.push_back({r * cosine, r * sine, z});
+    }
+  }
+  wedge.add_cell(CellType::prism, std::array<std::uint32_t, 6>{0, 1, 2, 5, 6, 7});
+  wedge.add_cell(CellType::hexahedron, std::array<std::uint32_t, 8>{1, 3, 4, 2, 6, 8, 9, 7});
+  wedge.patch_names = {{1, "front"}, {2, "back"}};
+  wedge.add_patch_face(std::array<std::uint32_t, 4>{0, 1, 6, 5}, 1);
+  wedge.add_patch_face(std::array<std::uint32_t, 4>{1, 3, 8, 6}, 1);
+  wedge.add_patch_face(std::array<std::uint32_t, 4>{0, 5, 7, 2}, 2);
+  wedge.add_patch_face(std::array<std::uint32_t, 4>{2, 7, 9, 4}, 2);
+  wedge.periodic.push_back({"front", "back", {}, {0.0, 0.0, 1.0}, {}, 30.0});
+  Environment environment(std::move(wedge));
+  EXPECT_EQ(environment.complex().periodic()->face_count(0), 2U);
+  Random random(7);
+  std::vector<Vec3> starts(400), ends(400);
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    starts[i] = {random.uniform(0.1, 1.5), 0.0, 0.5};
+    const Vec3 through_axis{-starts[i].x, 0.0, random.uniform(0.1, 0.9)};
+    ends[i] = i % 4 == 0 ? through_axis
+                         : Vec3{random.uniform(-1.3, 1.3), random.uniform(-1.3, 1.3), random.uniform(0.1, 0.9)};
+  }
+  Particles particles;
+  environment.add(particles, starts);
+  ASSERT_EQ(particles.size(), starts.size());
+  const StepReport report = environment.advance(particles, ends);
+  EXPECT_TRUE(report.contacts.contacts.empty() && report.held.empty() && report.stopped.empty());
+  for (const PeriodicCrossing& c : report.contacts.crossings)
+    ends[c.particle] = {dot(c.turn[0], ends[c.particle]), dot(c.turn[1], ends[c.particle]), ends[c.particle].z};
+  for (std::size_t i = 0; i < ends.size(); ++i) EXPECT_LT(norm(particles[i].position - ends[i]), 1e-12) << i;
+  EXPECT_GT(report.contacts.crossings.size(), starts.size());
+  test::expect_audited(environment.complex(), particles);
 }
 
 // Steps of any length among obstacles: contacts at the same walls, times and places.
@@ -311,6 +402,46 @@ TEST(Periodic, AllWaysToStepHaveTheSameBits) {
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const std::vector<Trace> traces = environment.trace(before, i, {&targets[i], 1}, respond);
     ASSERT_EQ(traces[0].after.position, particles[i].position);
+  }
+}
+
+// Corners of one side are off their partners: no particle is lost, and each goes as far as it should.
+TEST(Periodic, RoundedPartnersLoseNoParticle) {
+  const std::array<std::uint32_t, 3> cubes = {2, 2, 2};
+  for (const CellType type : {CellType::tetrahedron, CellType::hexahedron}) {
+    for (const double off : {1e-15, 1e-9, 1e-3}) {
+      MeshData box = periodic_box({.cells = cubes, .type = type}, 3);
+      test::shake(box, cubes, 6);
+      Random random(6);
+      for (Vec3& x : box.points)
+        x += Vec3{random.uniform(-off, off), random.uniform(-off, off), random.uniform(-off, off)};
+      for (PeriodicPair& pair : box.periodic) pair.tolerance = 2.0 * off;
+      Environment environment(std::move(box));
+      Particles particles;
+      std::vector<Vec3> starts;
+      for (int i = 0; i < 300; ++i)
+        starts.push_back({random.uniform(0.1, 1.9), random.uniform(0.1, 1.9), random.uniform(0.1, 1.9)});
+      environment.add(particles, starts);
+      ASSERT_EQ(particles.size(), starts.size());
+      Images images(starts.size());
+      for (int step = 0; step < 20; ++step) {
+        std::vector<Vec3> targets;
+        for (Vec3& x : starts) {
+          const Vec3 way{random.uniform(-1.5, 1.5), random.uniform(-1.5, 1.5), random.uniform(-1.5, 1.5)};
+          targets.push_back(particles[targets.size()].position + way);
+          x += way;
+        }
+        const StepReport report = environment.advance(particles, targets);
+        ASSERT_TRUE(report.held.empty() && report.stopped.empty() && report.contacts.contacts.empty());
+        count_images(report.contacts, images);
+        test::expect_audited(environment.complex(), particles);
+      }
+      for (std::size_t i = 0; i < starts.size(); ++i) {
+        const auto& n = images[i];
+        const Vec3 end = particles[i].position + Vec3{2.0 * n[0], 2.0 * n[1], 2.0 * n[2]};
+        ASSERT_LT(norm(end - starts[i]), 1e-12 + 200.0 * off) << "particle " << i << " off " << off;
+      }
+    }
   }
 }
 

@@ -22,7 +22,7 @@ std::vector<std::size_t> patch_sizes(const PolyMesh& mesh) {
   return sizes;
 }
 
-bool is_cyclic(const PolyPatch& patch) { return patch.type.starts_with("cyclic"); }
+bool is_cyclic(const PolyPatch& patch) { return patch.type.starts_with("cyclic") || patch.type == "wedge"; }
 
 void add_regions(const PolyMesh& mesh, ParsedMesh& parsed) {
   MeshData& out = parsed.mesh;
@@ -61,7 +61,7 @@ std::vector<std::int32_t> face_tags(const PolyMesh& mesh, ParsedMesh& parsed) {
   return tags;
 }
 
-// A cyclic patch leads to its other side, where we have a wall.
+// A cyclic patch or a wedge leads to its other side, where we have a wall unless the scene makes them a pair.
 void warn_of_cyclic(const PolyMesh& mesh, ParsedMesh& parsed) {
   std::vector<std::string> names;
   Finding finding{"cyclic", 0, {}, ""};
@@ -72,7 +72,10 @@ void warn_of_cyclic(const PolyMesh& mesh, ParsedMesh& parsed) {
   for (std::size_t f = 0; f < mesh.patch.size(); ++f) {
     if (mesh.patch[f] != none && is_cyclic(mesh.patches[mesh.patch[f]])) finding.add(f);
   }
-  finding.message = fmt::format("faces in cyclic patches ({}): they are walls here", fmt::join(names, ", "));
+  finding.message = fmt::format(
+      "faces in cyclic patches and wedges ({}): they are walls, unless [[periodic]] of the scene makes two of them a "
+      "pair",
+      fmt::join(names, ", "));
   add_finding(parsed.warnings, finding);
 }
 
@@ -81,11 +84,6 @@ void refuse_types(const PolyMesh& mesh) {
   for (std::size_t p = 0; p < sizes.size(); ++p) {
     const PolyPatch& patch = mesh.patches[p];
     if (sizes[p] == 0) continue;
-    if (patch.type == "wedge")
-      throw InvalidMesh(
-          fmt::format("the patch {} is a wedge: meshes that stand for a full turn are not supported; make "
-                      "a mesh of the whole domain",
-                      patch.name));
     if (patch.type.starts_with("processor"))
       throw InvalidMesh(
           fmt::format("the patch {} leads to another processor's part: name the case's folder, which has "
