@@ -93,6 +93,7 @@ struct EnvironmentScene {
   std::vector<std::string> walls;  ///< groups whose faces are walls also between two free cells (select_walls())
   /// The wall groups to distinguish; none: all groups of the mesh. Names: only these groups of the mesh.
   std::variant<std::monostate, std::vector<std::string>, PatchArray, PatchAngle> patches;
+  std::vector<PeriodicPair> periodic;  ///< pairs of these patches, beside those of the mesh; lengths after `scale`
 };
 
 /// One step of a deformation. Arrays of the mesh are named here.

@@ -342,6 +342,9 @@ class Simulation {
   /// A number for each name in SimulationOptions::user_data. It stays with the particle. Precondition: there is one.
   [[nodiscard]] std::span<const double> user_data(std::size_t particle) const;
   [[nodiscard]] std::span<double> user_data(std::size_t particle);
+  /// The place that each particle would have come to without periodic pairs, by the numbers image_A that its user data
+  /// counts for each pair of patches A and B. Two rotations about different lines cannot be told apart by counts.
+  [[nodiscard]] std::vector<Vec3> unwrapped() const;
 
   /// None if no body has been added. Their velocities() may be changed between steps; the simulation calls step().
   [[nodiscard]] const Bodies* bodies() const;

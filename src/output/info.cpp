@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "complex/periodic_faces.hpp"
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/map_edits.hpp"
 #include "mesh/mesh_scale.hpp"
@@ -46,6 +47,10 @@ void count_walls(const CellComplex& complex, MeshInfo& info) {
   const CombinatorialMap& map = complex.map();
   info.wall_faces = map.wall_face_count();
   info.inner_walls = inner_walls(map).size() / 2;
+  if (const detail::PeriodicFaces* pairs = complex.periodic()) {
+    for (std::size_t i = 0; i < pairs->pairs().size(); ++i)
+      info.periodic.push_back({pairs->pairs()[i], pairs->face_count(i)});
+  }
   for (const Cell c : map.cells()) {
     const CellView view = map.view(c);
     if (!view.is_free()) continue;
@@ -125,6 +130,29 @@ std::string list(const Counts& counts) {
   return text;
 }
 
+nlohmann::ordered_json periodic_json(const std::vector<PeriodicInfo>& periodic) {
+  const auto list = [](const Vec3& v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
+  auto json = nlohmann::ordered_json::array();
+  for (const auto& [pair, faces] : periodic) {
+    json.push_back({{"a", pair.a}, {"b", pair.b}, {"faces", faces}, {"translate", list(pair.translate)}});
+    if (pair.angle == 0.0) continue;
+    json.back()["axis"] = list(pair.axis);
+    json.back()["centre"] = list(pair.centre);
+    json.back()["angle"] = pair.angle;
+  }
+  return json;
+}
+
+std::string periodic_text(const PeriodicInfo& info) {
+  const auto& [pair, faces] = info;
+  const auto text = [](const Vec3& v) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x, v.y, v.z); };
+  std::string out = fmt::format("periodic: {} leads to {}, {} faces", pair.a, pair.b, faces);
+  if (pair.angle != 0.0)
+    out += fmt::format(", turned by {} degrees around {} at {}", pair.angle, text(pair.axis), text(pair.centre));
+  if (pair.angle == 0.0 || pair.translate != Vec3{}) out += fmt::format(", moved by {}", text(pair.translate));
+  return out + "\n";
+}
+
 }  // namespace
 
 std::size_t MeshInfo::cell_count() const {
@@ -177,6 +205,7 @@ std::string info_json(const MeshInfo& i) {
                                  {"bytes", i.bytes},
                                  {"point_arrays", arrays_json(i.point_arrays)},
                                  {"cell_arrays", arrays_json(i.cell_arrays)}};
+  if (!i.periodic.empty()) json["periodic"] = periodic_json(i.periodic);
   for (const Finding& f : i.warnings)
     json["warnings"].push_back({{"kind", f.kind}, {"count", f.count}, {"message", f.message}});
   if (i.bytes > 0 && i.cell_count() > 0)
@@ -191,6 +220,7 @@ std::string info_text(const MeshInfo& i) {
   out += fmt::format("wall {}: {}{}{}\n", plane ? "edges" : "faces", i.wall_faces,
                      i.patches.empty() ? "" : ", by patch: ", list(i.patches));
   if (i.inner_walls > 0) out += fmt::format("inner walls: {}, each one of these from both sides\n", i.inner_walls);
+  for (const PeriodicInfo& pair : i.periodic) out += periodic_text(pair);
   for (const auto& [name, p] : i.patch_places) {
     out += fmt::format("patch {}: {} {:.6g}, centre ({:.6g}, {:.6g}, {:.6g})\n", name, plane ? "length" : "area",
                        p.size, p.centre.x, p.centre.y, p.centre.z);

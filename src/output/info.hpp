@@ -28,6 +28,12 @@ struct PatchPlace {
   Vec3 centre;        ///< of that area
 };
 
+/// A periodic pair, and how many pairs of faces lead from one to the other.
+struct PeriodicInfo {
+  PeriodicPair pair;
+  std::size_t faces = 0;
+};
+
 struct MeshInfo {
   std::string name;
   unsigned dimension = 3;
@@ -38,6 +44,7 @@ struct MeshInfo {
   std::map<std::string, PatchPlace> patch_places;
   std::size_t free_cells = 0;
   std::size_t wall_faces = 0;
+  std::vector<PeriodicInfo> periodic;
   std::size_t inner_walls = 0;  ///< of these, pairs with a cell on both sides (inner_walls())
   std::size_t shapes = 0;       ///< kinds of cell that the map distinguishes
   std::uint64_t simplices = 0;

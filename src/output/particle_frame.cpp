@@ -49,6 +49,7 @@ VtpFile particles_file(const Simulation& simulation) {
   const std::vector<std::string>& names = simulation.options().user_data;
   for (std::size_t k = 0; k < names.size(); ++k)
     file.add(names[k], each(n, [&](std::size_t i) { return simulation.user_data(i)[k]; }));
+  if (complex.periodic() != nullptr) file.add("unwrapped", simulation.unwrapped());
   return file;
 }
 

@@ -31,6 +31,7 @@ class SceneReader {
     root.get("seed", scene.seed, 0, max_seed);
     root.require("environment", "say [environment] with mesh = \"FILE\" or generator = \"box\"");
     scene.environment = read_environment(root.table("environment"), folder_);
+    for (TomlTable& t : root.tables("periodic")) scene.environment.periodic.push_back(periodic_pair(t));
     for (TomlTable& t : root.tables("deformation")) scene.deformation.push_back(deformation(t));
     for (TomlTable& t : root.tables("particles")) scene.particles.push_back(read_particles(t, folder_));
     for (TomlTable& t : root.tables("body"))
@@ -58,6 +59,24 @@ class SceneReader {
   }
 
  private:
+  static PeriodicPair periodic_pair(TomlTable& t) {
+    PeriodicPair pair;
+    t.require("a", "a patch");
+    t.require("b", "the patch that a particle enters by if it leaves through a");
+    t.get("a", pair.a);
+    t.get("b", pair.b);
+    t.get("translate", pair.translate);
+    t.get("axis", pair.axis);
+    t.get("centre", pair.centre);
+    t.get("angle", pair.angle, {-360.0, 360.0});
+    t.get("tolerance", pair.tolerance, {0.0, 0.1});
+    if (!t.has("translate") && !t.has("angle"))
+      t.fail("", "say how a comes to b: translate = [x, y, z], or axis, centre and angle (degrees)");
+    if (t.has("angle") && pair.axis == Vec3{}) t.fail("axis", "an angle needs an axis that is not zero");
+    t.finish();
+    return pair;
+  }
+
   DeformationScene deformation(TomlTable& t) const {
     DeformationScene scene;
     DeformationStep& step = scene.step;

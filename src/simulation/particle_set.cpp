@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "dartcast/cell_complex.hpp"
 #include "dartcast/error.hpp"
 #include "simulation/force_step.hpp"
 #include "simulation/size_sampler.hpp"
@@ -27,6 +28,8 @@ void check(const NewParticle& particle, const Environment& environment, const Si
   if (radius > 0.0 && options.wall_motion == WallMotion::simultaneous)
     fail("radius is {}: points alone move at the same time as the walls: leave it out, or take the wall motion carried",
          radius);
+  if (radius > 0.0 && environment.complex().periodic() != nullptr)
+    fail("radius is {}: in a scene with periodic pairs there are points alone: leave it or the pairs out", radius);
   if (const std::string wrong = wrong_material(material, options.forces); !wrong.empty()) fail("{}", wrong);
   if (knows_drops(options) && (material.diameter == 0.0 || material.density == 0.0))
     fail("diameter is {} and density {}: stick_below_weber of walls needs both", material.diameter, material.density);

@@ -87,6 +87,33 @@ class TallyUse {
   std::vector<std::uint64_t> numbers_;
 };
 
+// While it lives, the particles' images are counted.
+class ImagesUse {
+ public:
+  ImagesUse(Environment& environment, const PeriodicImages& images, ParticleSet& set)
+      : environment_(environment), counts_(images.size() > 0) {
+    if (counts_) environment.set_crossing_callback(images.callback(set));
+  }
+  ImagesUse(const ImagesUse&) = delete;
+  ImagesUse& operator=(const ImagesUse&) = delete;
+  ~ImagesUse() {
+    if (counts_) environment_.set_crossing_callback({});
+  }
+
+ private:
+  Environment& environment_;
+  bool counts_;
+};
+
+void check_periodic(const SimulationOptions& o) {
+  const auto refuse = [](const char* what) {
+    throw InvalidArgument(
+        fmt::format("simulation: {} cannot be in a scene with periodic pairs: leave either out", what));
+  };
+  if (o.collisions) refuse("spheres that collide");
+  if (o.wall_motion == WallMotion::simultaneous) refuse("points that move at the same time as the walls");
+}
+
 void check(const SimulationOptions& o, bool planar) {
   if (!(o.dt >= smallest_dt && o.dt <= largest_dt))
     throw InvalidArgument(fmt::format("simulation: dt is {}: it must be between 2^-100 and 2^100 s", o.dt));
@@ -142,8 +169,10 @@ ParticleSystem::ParticleSystem(Environment& environment, Followers& followers, M
       parcels_(options_),
       aiming_(environment, followers, motion, options_, sampled_),
       sampled_(environment, followers, options_.user_data),
+      images_(environment.complex(), options_.user_data),
       contacts_(environment, followers, motion, options_, responses_) {
   check(options, environment.map().dimension() == 2);
+  if (images_.pairs() != nullptr) check_periodic(options);
   if (environment.map().dimension() == 2 && options.gravity.z != 0.0)
     throw InvalidArgument(fmt::format("simulation: gravity is ({}, {}, {}): in the plane its z must be 0",
                                       options.gravity.x, options.gravity.y, options.gravity.z));
@@ -198,6 +227,7 @@ void ParticleSystem::advance_segment(unsigned segment, std::vector<std::uint8_t>
   const ScopeTimer timer(totals_.seconds_detect);
   const ContactCallback respond = response(dt);
   const TallyUse use(environment_, tally_, tally_ != nullptr ? parcels_.numbers(set_) : std::vector<std::uint64_t>());
+  const ImagesUse images(environment_, images_, set_);
   if (set_.spheres == 0) {
     StepReport report =
         part_ != nullptr ? advance_in_part(aiming_.acceleration(dt), departed)

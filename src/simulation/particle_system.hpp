@@ -17,6 +17,7 @@
 #include "simulation/parcels.hpp"
 #include "simulation/particle_set.hpp"
 #include "simulation/particle_share.hpp"
+#include "simulation/periodic_images.hpp"
 #include "simulation/sampled_fields.hpp"
 #include "simulation/seeding.hpp"
 #include "simulation/simulation_state.hpp"
@@ -36,6 +37,7 @@ class ParticleSystem final : public SimulationComponent {
 
   [[nodiscard]] Aiming& aiming() { return aiming_; }
   [[nodiscard]] SampledFields& sampled() { return sampled_; }
+  [[nodiscard]] const PeriodicImages& images() const { return images_; }
   /// Gives all particles the values of the sampled arrays at their places now, and adds their integrals over a duration.
   void take_samples(double duration = 0.0) { sampled_.take(set_, motion_.time(), duration); }
   /// Steps are added to it; null: to none.
@@ -126,6 +128,7 @@ class ParticleSystem final : public SimulationComponent {
   Parcels parcels_;
   Aiming aiming_;
   SampledFields sampled_;
+  PeriodicImages images_;
   SphereStepper stepper_;
   SimultaneousStepper simultaneous_stepper_;
   SphereContacts contacts_;

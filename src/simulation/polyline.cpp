@@ -12,6 +12,8 @@ void append_segment(StepReport& report, StepReport segment, std::size_t index, s
   for (Contact& c : segment.contacts.contacts) {
     c.time_of_impact = (static_cast<double>(index) + c.time_of_impact) / static_cast<double>(segments);
   }
+  for (PeriodicCrossing& c : segment.contacts.crossings)
+    c.time = (static_cast<double>(index) + c.time) / static_cast<double>(segments);
   const bool sorted = report.contacts.contacts.empty() || segment.contacts.contacts.empty();
   report.contacts.append(segment.contacts);
   if (!sorted) {
@@ -19,6 +21,8 @@ void append_segment(StepReport& report, StepReport segment, std::size_t index, s
     std::stable_sort(report.contacts.contacts.begin(), report.contacts.contacts.end(),
                      [](const Contact& a, const Contact& b) { return a.particle < b.particle; });
   }
+  std::stable_sort(report.contacts.crossings.begin(), report.contacts.crossings.end(),
+                   [](const PeriodicCrossing& a, const PeriodicCrossing& b) { return a.particle < b.particle; });
   std::vector<HeldParticle> held;
   std::set_union(report.held.begin(), report.held.end(), segment.held.begin(), segment.held.end(),
                  std::back_inserter(held),

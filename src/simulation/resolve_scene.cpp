@@ -14,6 +14,7 @@
 #include "simulation/eddies.hpp"
 #include "simulation/mesh_arrays.hpp"
 #include "simulation/parcels.hpp"
+#include "simulation/periodic_images.hpp"
 #include "simulation/resolved_scene.hpp"
 #include "simulation/scene_environment.hpp"
 
@@ -159,7 +160,7 @@ std::vector<Event> events_of(const Scene& scene, const MeshData& mesh, const Com
 // The mesh of a scene that has been loaded is taken as it is.
 bool is_ready(const EnvironmentScene& scene) {
   return std::holds_alternative<MeshData>(scene.mesh) && scene.scale == 1.0 && !scene.skip_bad_cells &&
-         scene.walls.empty() && std::holds_alternative<std::monostate>(scene.free) &&
+         scene.walls.empty() && scene.periodic.empty() && std::holds_alternative<std::monostate>(scene.free) &&
          std::holds_alternative<std::monostate>(scene.patches);
 }
 
@@ -173,6 +174,7 @@ void resolve_on(const MeshData& mesh, const Scene& scene, Threads threads, Resol
     resolved.options.user_data.insert(resolved.options.user_data.end(), f.names.begin(), f.names.end());
   if (!scene.motion.turbulence.k.empty())
     resolved.options.user_data.insert(resolved.options.user_data.end(), eddy_numbers.begin(), eddy_numbers.end());
+  for (std::string& name : image_numbers(complex)) resolved.options.user_data.push_back(std::move(name));
   for (const auto& [name, component] : scene.motion.integrate) resolved.options.user_data.push_back(name);
   const std::vector<std::string>& names = scene.user_data;
   if (std::find(names.begin(), names.end(), parcel_number) == names.end() &&

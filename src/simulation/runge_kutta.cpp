@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "complex/simplex.hpp"
 #include "tracking/carry.hpp"
+#include "tracking/periodic_passage.hpp"
 #include "tracking/walk.hpp"
 
 namespace dartcast {
@@ -72,16 +74,43 @@ class RungeKuttaStages {
       if (volume_sign(space.corners(start.simplex)) != Sign::positive) return velocity_at_particle(s, moment);
       start = detail::carried(space, start.simplex, weights_);
     }
-    const Vec3 end = flushed(x);
-    if (end == start.position) return velocity_at(start.simplex, end, s, moment);
-    TestCounts uncounted;
-    const Walk w = walk(space, start.simplex, start.position, end, uncounted);
-    switch (w.end) {
-      case WalkEnd::arrived: return velocity_at(w.simplex, end, s, moment);
-      case WalkEnd::wall: return velocity_at(w.wall_simplex, contact(space, w, start.position, end), s, moment);
-      case WalkEnd::invalid_cell: break;
+    Vec3 end = flushed(x);
+    std::vector<const detail::PeriodicPartner*> passed;
+    while (end != start.position) {
+      TestCounts uncounted;
+      Walk w = walk(space, start.simplex, start.position, end, uncounted);
+      if (w.end == WalkEnd::wall && passes_periodic(space, w, start, end, passed)) continue;
+      if (w.end == WalkEnd::invalid_cell) return velocity_at_particle(s, moment);
+      if (w.end == WalkEnd::arrived) return turned_back(passed, velocity_at(w.simplex, end, s, moment));
+      return turned_back(passed, velocity_at(w.wall_simplex, contact(space, w, start.position, end), s, moment));
     }
-    return velocity_at_particle(s, moment);
+    return turned_back(passed, velocity_at(start.simplex, end, s, moment));
+  }
+
+  // Whether the walk goes on from the partner of a periodic face. No stage passes more faces than a step may.
+  template <class Space>
+  bool passes_periodic(const Space& space, Walk& w, SimplexPlacement& start, Vec3& end,
+                       std::vector<const detail::PeriodicPartner*>& passed) const {
+    const detail::PeriodicFaces* const pairs = step_.complex.periodic();
+    if (pairs == nullptr || passed.size() >= StepOptions().max_crossings) return false;
+    const auto* const partner = detail::periodic_end(space, *pairs, w, start.position, end);
+    if (partner == nullptr) return false;
+    const auto entry = detail::periodic_entry(space, *pairs, *partner, w, contact(space, w, start.position, end), end);
+    if (volume_sign(entry.corners) != Sign::positive) {
+      w.end = WalkEnd::invalid_cell;
+      return false;
+    }
+    start = place_in_simplex(space, entry.simplex, entry.corners, entry.on_plane);
+    end = entry.target;
+    passed.push_back(partner);
+    return true;
+  }
+
+  // The velocity at an image, as the particle sees it.
+  [[nodiscard]] Vec3 turned_back(const std::vector<const detail::PeriodicPartner*>& passed, Vec3 v) const {
+    for (auto p = passed.rbegin(); p != passed.rend(); ++p)
+      v = step_.complex.periodic()->motion({{}, (*p)->pair, !(*p)->back}).vector(v);
+    return v;
   }
 
   // Rounded: the point where the way from p to q meets the wall.

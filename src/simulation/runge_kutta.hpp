@@ -16,8 +16,8 @@ struct RungeKuttaStep {
 
 /// The mean velocity of the step. The step's target is then the particle's position plus dt times the velocity. A stage
 /// is only a place where the field is evaluated: it changes no state, and its rounding decides nothing. The way to a
-/// stage is an exact walk from the particle, in the mesh as it is at the stage's time. If a wall is in the way, the
-/// field at the contact counts. If an invalid cell is in the way, the field at the particle counts. Preconditions: the
+/// stage is an exact walk from the particle, in the mesh as it is at the stage's time. It passes faces of periodic pairs.
+/// If a wall is in the way, the field at the contact counts. If an invalid cell is in the way, the field at the particle counts. Preconditions: the
 /// particle is not held; `moving`: its state is from before the move. Cost: four evaluations, three short walks.
 Vec3 runge_kutta_velocity(const RungeKuttaStep& step, const ParticleState& particle);
 

@@ -68,12 +68,14 @@ void select_cells_and_patches(MeshData& mesh, const EnvironmentScene& scene) {
   select_walls(mesh, scene.walls);
   if (const auto* names = std::get_if<std::vector<std::string>>(&scene.patches)) select_patches(mesh, *names);
   if (const auto* angle = std::get_if<PatchAngle>(&scene.patches)) divide_walls(mesh, angle->degrees);
+  mesh.periodic.insert(mesh.periodic.end(), scene.periodic.begin(), scene.periodic.end());
 }
 
 void check_patches(const Scene& scene, const MeshData& mesh) {
   if (!scene.events.empty()) return;
   std::vector<std::string> named;
   if (const auto* names = std::get_if<std::vector<std::string>>(&scene.environment.patches)) named = *names;
+  for (const PeriodicPair& pair : scene.environment.periodic) named.insert(named.end(), {pair.a, pair.b});
   for (const auto& entry : scene.contact.by_patch) named.push_back(entry.first);
   for (const ParticlesScene& p : scene.particles) {
     const auto* inlet = std::get_if<InletParticles>(&p.source);
@@ -96,6 +98,7 @@ MeshData scene_mesh(const EnvironmentScene& scene) {
 }
 
 void check_can_be_spread(const Scene& scene) {
+  refuse_if(!scene.environment.periodic.empty(), "periodic pairs");
   refuse_if(scene.collisions.has_value(), "spheres that collide");
   refuse_if(!scene.bodies.empty(), "bodies");
   refuse_if(!scene.catheters.empty(), "catheters");

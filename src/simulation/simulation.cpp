@@ -240,6 +240,13 @@ std::span<const double> Simulation::user_data(std::size_t particle) const {
   return std::as_const(parts_->particles).set().user_data(particle);
 }
 std::span<double> Simulation::user_data(std::size_t particle) { return parts_->particles.set().user_data(particle); }
+std::vector<Vec3> Simulation::unwrapped() const {
+  const ParticleSystem& system = parts_->particles;
+  std::vector<Vec3> places;
+  for (std::size_t i = 0; i < system.set().ids().size(); ++i)
+    places.push_back(system.images().unwrapped(system.set().states[i].position, system.set().user_data(i)));
+  return places;
+}
 
 const Bodies* Simulation::bodies() const {
   const std::optional<Bodies>& bodies = std::as_const(parts_->bodies).bodies();

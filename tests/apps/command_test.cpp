@@ -282,6 +282,21 @@ TEST_F(Command, InfoDescribesMeshesAndScenes) {
   EXPECT_NE(run("info good.mesh").out.find("per cell"), std::string::npos);
 }
 
+TEST_F(Command, InfoListsPeriodicPairs) {
+  (void)write("periodic.toml",
+              "[environment]\ngenerator = 'box'\ncells = [2, 2, 1]\n"
+              "[[periodic]]\na = 'zmax'\nb = 'zmin'\ntranslate = [0.0, 0.0, -1.0]\n"
+              "[[periodic]]\na = 'ymin'\nb = 'xmin'\naxis = [0.0, 0.0, 1.0]\nangle = 90.0\n");
+  const std::string text = run("info periodic.toml").out;
+  EXPECT_NE(text.find("periodic: zmax leads to zmin, 4 faces, moved by (0, 0, -1)\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("periodic: ymin leads to xmin, 2 faces, turned by 90 degrees around (0, 0, 1) at (0, 0, 0)\n"),
+            std::string::npos)
+      << text;
+  const auto json = nlohmann::json::parse(run("info periodic.toml --json").out)["periodic"];
+  EXPECT_EQ(json[0]["faces"], 4);
+  EXPECT_EQ(json[1]["angle"], 90.0);
+}
+
 TEST_F(Command, InfoListsArraysWithTheirRanges) {
   (void)write("a.vtk",
               "# vtk DataFile Version 3.0\na\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n"

@@ -156,6 +156,8 @@ TEST(Periodic, LatticeStepsStopAtTheWallsOfARepeatedBox) {
     const StepReport one = twins.one.advance(twins.ones, targets);
     const StepReport all = twins.all.advance(twins.alls, targets);
     count_images(one.contacts, twins.images);
+    for (const WallHit& wall : one.contacts.walls)
+      ASSERT_EQ(twins.one.complex().periodic()->partner(wall.face), nullptr) << "seed " << seed;
     contacts += all.contacts.contacts.size();
     std::vector<double> times(targets.size(), 1.0), others(targets.size(), 1.0);
     std::vector<bool> grazes(targets.size());  // the shift decides, which is chosen anew at each crossing

@@ -167,6 +167,32 @@ tolerance = 0.25
 patch = "xmin"
 )";
 
+TEST(SceneFile, PeriodicPairsAreRead) {
+  const Scene s = parse_scene(box + R"(
+[[periodic]]
+a = "left"
+b = "right"
+translate = [1.0, 2.0, 3.0]
+[[periodic]]
+a = "top"
+b = "bottom"
+axis = [0.0, 0.0, 1.0]
+centre = [4.0, 5.0, 6.0]
+angle = 30.0
+tolerance = 1e-3
+)",
+                              "scene.toml");
+  const PeriodicPair moved{"left", "right", {1.0, 2.0, 3.0}};
+  const PeriodicPair turned{"top", "bottom", {}, {0.0, 0.0, 1.0}, {4.0, 5.0, 6.0}, 30.0, 1e-3};
+  EXPECT_EQ(s.environment.periodic, (std::vector<PeriodicPair>{moved, turned}));
+  const auto refused = [](const std::string& keys, const std::string& words) {
+    expect_error(box + "[[periodic]]\n" + keys, "", words);
+  };
+  refused("a = \"left\"\n", "the patch that a particle enters by");
+  refused("a = \"left\"\nb = \"right\"\n", "say how a comes to b");
+  refused("a = \"left\"\nb = \"right\"\nangle = 30.0\n", "an angle needs an axis");
+}
+
 TEST(SceneFile, EventsAreReadInOrderOfTime) {
   const Scene s = parse_scene(box + events_text, "folder/scene.toml");
   EXPECT_EQ(s.remesh.every, 5U);
