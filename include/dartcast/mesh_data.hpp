@@ -47,9 +47,9 @@ struct PeriodicPair {
   Vec3 translate{};
   Vec3 axis{};         ///< of the rotation, of any length; zero: there is none
   Vec3 centre{};       ///< a point of the rotation's line
-  double angle = 0.0;  ///< degrees, counterclockwise as seen against the axis
-  /// How far a corner may be off its partner, as a share of the diagonal of the box around a; above 0, up to 0.1. It only
-  /// chooses the partners.
+  double angle = 0.0;  ///< degrees, counterclockwise as seen against the axis.
+  /// The largest distance of a corner from its partner, as a share of the diagonal of the box around a. It is above 0,
+  /// and at most 0.1. It only chooses the partners.
   double tolerance = 1e-6;
 
   bool operator==(const PeriodicPair&) const = default;

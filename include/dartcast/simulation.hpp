@@ -342,8 +342,8 @@ class Simulation {
   /// A number for each name in SimulationOptions::user_data. It stays with the particle. Precondition: there is one.
   [[nodiscard]] std::span<const double> user_data(std::size_t particle) const;
   [[nodiscard]] std::span<double> user_data(std::size_t particle);
-  /// The place that each particle would have come to without periodic pairs, by the numbers image_A that its user data
-  /// counts for each pair of patches A and B. Two rotations about different lines cannot be told apart by counts.
+  /// The places that particles would have without periodic pairs. The number image_A of their user data counts crossings of
+  /// the pair of the patches A and B. Rotations about different lines must not be mixed: counts do not know their order.
   [[nodiscard]] std::vector<Vec3> unwrapped() const;
 
   /// None if no body has been added. Their velocities() may be changed between steps; the simulation calls step().

@@ -1,4 +1,4 @@
-// What particles of a simulation carry through periodic faces: images are counted, and vectors turn. Not installed.
+// The numbers that particles of a simulation carry through periodic faces: counts of images, and vectors. Not installed.
 #pragma once
 
 #include <cstddef>

@@ -100,7 +100,7 @@ class RungeKuttaStages {
       w.end = WalkEnd::invalid_cell;
       return false;
     }
-    start = place_in_simplex(space, entry.simplex, entry.corners, entry.on_plane);
+    start = place_in_simplex(space, entry.simplex, entry.corners, entry.on_plane());
     end = entry.target;
     passed.push_back(partner);
     return true;

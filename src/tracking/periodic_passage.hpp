@@ -1,6 +1,6 @@
 // Through a face of a periodic pair to its partner.
 //
-// The walk decides on the side that it leaves whether it passes, exactly. Here the crossing is handed over: the face, and
+// The walk decides on the side that it leaves whether it passes, exactly. The partner gets the face, and
 // the place in it by the weights of its corners. So the partner's corners may be rounded, and no particle is lost.
 #pragma once
 
@@ -28,11 +28,28 @@ inline const PeriodicPartner* partner_of(const PeriodicFaces& pairs, SimplexId i
 template <std::size_t N>
 struct PeriodicEntry {
   SimplexId simplex;
+  std::uint16_t facet = 0;  ///< of the simplex: the triangle
   std::array<Vec3, N> corners;
   WallPlane plane;
-  Vec3 point;     ///< rounded: it may be off the triangle
-  Vec3 on_plane;  ///< the point of the triangle next to it, rounded
+  Vec3 point;  ///< rounded: it may be off the triangle
   Vec3 target;
+
+  /// The point of the triangle next to `point`, rounded.
+  [[nodiscard]] Vec3 on_plane() const {
+    const std::array<double, N - 1> weight = weights_in(corners, plane, point);
+    double sum = 0.0;
+    Vec3 x;
+    for (unsigned i = 0; i < N - 1; ++i) {
+      sum += weight[i];
+      x += corners[facet_corner<N>(facet, i)] * weight[i];
+    }
+    return sum > 0.0 ? x * (1.0 / sum) : plane.a;
+  }
+  /// Whether the point is strictly inside the triangle, as seen along the triangle's normal.
+  [[nodiscard]] bool is_over() const {
+    const std::array<double, N - 1> weight = weights_in(corners, plane, point);
+    return std::all_of(weight.begin(), weight.end(), [](double w) { return w > 0.0; });
+  }
 };
 
 /// The image of a point is that of the motion, moved by the differences between the partner's corners and the images of
@@ -43,19 +60,23 @@ Vec3 shift_at(const Space<Positions, N>& space, const PeriodicFaces& pairs, cons
   const CellView cell = space.map->view(w.wall_simplex.cell);
   const ImplicitSimplex& s = cell.shape().simplices()[w.wall_simplex.simplex];
   const std::array<Vec3, N> v = space.corners(cell, s);
+  std::array<Vec3, N - 1> off{};
+  bool exact = true;
+  for (unsigned i = 0; i < N - 1; ++i) {
+    const unsigned corner = facet_corner<N>(w.wall_facet, i);
+    const Vertex partner = pairs.partner(to, cell.vertex(s.vertex[corner]));
+    if (!partner.valid()) continue;
+    off[i] = space.positions[partner] - pairs.motion(to).point(v[corner]);
+    if constexpr (N == 3) off[i].z = 0.0;
+    exact &= off[i] == Vec3{};
+  }
+  if (exact) return {};
   const std::array<double, N - 1> weight = weights_in(v, facet_plane(v, w.wall_facet), x);
   double sum = 0.0;
   for (const double each : weight) sum += each;
   const bool known = sum > 0.0 && std::isfinite(sum);
   Vec3 shift;
-  for (unsigned i = 0; i < N - 1; ++i) {
-    const unsigned corner = facet_corner<N>(w.wall_facet, i);
-    const Vertex partner = pairs.partner(to, cell.vertex(s.vertex[corner]));
-    if (!partner.valid()) continue;
-    Vec3 off = space.positions[partner] - pairs.motion(to).point(v[corner]);
-    if constexpr (N == 3) off.z = 0.0;
-    shift += off * (known ? weight[i] / sum : 1.0 / (N - 1.0));
-  }
+  for (unsigned i = 0; i < N - 1; ++i) shift += off[i] * (known ? weight[i] / sum : 1.0 / (N - 1.0));
   return shift;
 }
 
@@ -69,26 +90,18 @@ PeriodicEntry<N> periodic_entry(const Space<Positions, N>& space, const Periodic
   entry.point = flushed(motion.point(x) + shift);
   entry.target = flushed(motion.point(q) + shift);
   const CellView cell = space.map->view(to.face.cell);
+  const std::uint16_t triangles = cell.shape().triangle_count(to.face.face);
   double nearest = std::numeric_limits<double>::infinity();
-  for (std::uint16_t t = 0; t < cell.shape().triangle_count(to.face.face); ++t) {
+  for (std::uint16_t t = 0; t < triangles; ++t) {
     const Across behind = cell.shape().entry(to.face.face, t);
+    const SimplexId simplex = {to.face.cell, behind.index};
     const std::array<Vec3, N> v = space.corners(cell, cell.shape().simplices()[behind.index]);
-    const WallPlane plane = facet_plane(v, behind.place);
-    const std::array<double, N - 1> weight = weights_in(v, plane, entry.point);
-    double sum = 0.0;
-    Vec3 on_plane;
-    for (unsigned i = 0; i < N - 1; ++i) {
-      sum += weight[i];
-      on_plane += v[facet_corner<N>(behind.place, i)] * weight[i];
-    }
-    on_plane = sum > 0.0 ? on_plane * (1.0 / sum) : plane.a;
-    const double off = norm(on_plane - entry.point);
+    const PeriodicEntry<N> here = {simplex, behind.place, v, facet_plane(v, behind.place), entry.point, entry.target};
+    if (triangles == 1 || here.is_over()) return here;
+    const double off = norm(here.on_plane() - here.point);
     if (t > 0 && !(off < nearest)) continue;
     nearest = off;
-    entry.simplex = {to.face.cell, behind.index};
-    entry.corners = v;
-    entry.plane = plane;
-    entry.on_plane = on_plane;
+    entry = here;
   }
   return entry;
 }

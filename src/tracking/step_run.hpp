@@ -313,19 +313,14 @@ class StepRun {
   template <class Positions>
   [[gnu::noinline]] bool cross(const Space<Positions, N>& space, const Walk& w, const Vec3& p, const Vec3& q,
                                const WallImpact* impact, const PeriodicPartner& to) {
-    const Simplex leaving = space.corners(w.wall_simplex);
-    const double t =
-        impact != nullptr
-            ? impact->fraction
-            : contact_geometry(complex_.map(), leaving, facet_plane(leaving, w.wall_facet), w, p, q).fraction;
+    const double t = impact != nullptr ? impact->fraction : fraction_of(space, w, p, q);
     const Vec3 x = w.at_start ? p : flushed(p + (q - p) * t);
     PeriodicEntry<N> entry = periodic_entry(space, *pairs_, to, w, x, q);
-    if (!positive(entry.corners)) {  // as where a walk comes to such a cell
+    if (!place(space, entry)) {  // as where a walk comes to such a cell
       s_.result.held = true;
       s_.result.invalid_cell = entry.simplex.cell;
       return false;
     }
-    place(space, entry);
     // It entered: rounding must not lead it out again.
     WallPlanes<N> planes;
     planes.add(flushed_plane(entry.plane));
@@ -341,16 +336,25 @@ class StepRun {
     return false;
   }
 
-  // As at a contact: near the place, inside the simplex.
   template <class Positions>
-  void place(const Space<Positions, N>& space, const PeriodicEntry<N>& entry) {
-    state_.touching_count = 0;
-    if (const auto proved = proved_inside(entry.corners, entry.point)) return state_.put(entry.simplex, *proved);
-    const SimplexPlacement placed = next_to(space, entry.simplex, entry.corners, entry.on_plane);
-    state_.put(placed.simplex, placed.position);
+  double fraction_of(const Space<Positions, N>& space, const Walk& w, const Vec3& p, const Vec3& q) const {
+    const Simplex corners = space.corners(w.wall_simplex);
+    return contact_geometry(complex_.map(), corners, facet_plane(corners, w.wall_facet), w, p, q).fraction;
   }
 
-  // The time of a crossing at the fraction t of the way; what is left of the step is turned. Walls met before are those
+  // As at a contact: near the place, inside the simplex. Returns false if the simplex is not positive.
+  template <class Positions>
+  bool place(const Space<Positions, N>& space, const PeriodicEntry<N>& entry) {
+    const auto proved = proved_inside(entry.corners, entry.point);
+    if (!proved && !positive(entry.corners)) return false;
+    const SimplexPlacement placed = proved ? SimplexPlacement{entry.simplex, *proved}
+                                           : next_to(space, entry.simplex, entry.corners, entry.on_plane());
+    state_.put(placed.simplex, placed.position);
+    state_.touching_count = 0;
+    return true;
+  }
+
+  // The time of a crossing at the fraction t of the way; the rest of the step is turned. Walls met before are those
   // of another image: nothing joins them from now on.
   void note(const Walk& w, const PeriodicPartner& to, double t) {
     TimeInterval& i = s_.interval;
