@@ -95,7 +95,7 @@ class RungeKuttaStages {
     if (pairs == nullptr || passed.size() >= StepOptions().max_crossings) return false;
     const auto* const partner = detail::periodic_end(space, *pairs, w, start.position, end);
     if (partner == nullptr) return false;
-    const auto entry = detail::periodic_entry(space, *pairs, *partner, w, contact(space, w, start.position, end), end);
+    const auto entry = detail::periodic_entry(space, *pairs, *partner, w, start.position, end);
     if (volume_sign(entry.corners) != Sign::positive) {
       w.end = WalkEnd::invalid_cell;
       return false;

@@ -30,7 +30,8 @@ struct Feature {
 
 /// Bit i is set if the facet opposite to corner i holds the feature.
 template <std::size_t N = 4>
-unsigned facets_holding(const Feature& feature, const CellView& cell, const ImplicitSimplex& s) {
+[[gnu::always_inline]] inline unsigned facets_holding(const Feature& feature, const CellView& cell,
+                                                      const ImplicitSimplex& s) {
   std::array<Vertex, N> corner;
   for (unsigned i = 0; i < N; ++i) corner[i] = cell.vertex(s.vertex[i]);
   unsigned beside = (1U << N) - 1U;

@@ -260,11 +260,9 @@ class StepRun {
         return true;
       }
       driver_.walked(space, w, p, q, s_.interval.begin, s_.interval.end);
-      if (!Driver::travels && pairs_ != nullptr && w.end == WalkEnd::wall) {
-        if (const PeriodicPartner* const partner = periodic_end(space, *pairs_, w, p, q)) {
-          if (!cross(space, w, p, q, impact, *partner)) return true;
-          continue;
-        }
+      if (!Driver::travels && pairs_ != nullptr && w.end == WalkEnd::wall && crosses(space, w, p, q, impact)) {
+        if (!s_.moves_itself()) return true;
+        continue;
       }
       if (w.end == WalkEnd::arrived) {
         state_.put(w.simplex, q);
@@ -308,38 +306,36 @@ class StepRun {
 
   // --- periodic faces
 
-  // Puts the particle at the partner of the face that the walk passes, and aims it at the image of the target. Returns
-  // false if it goes no further.
+  // Whether the walk passes a face of a pair. Then the particle is at the partner, and is aimed at the image of the target,
+  // or it goes no further. If not, `w` says how it ends.
   template <class Positions>
-  [[gnu::noinline]] bool cross(const Space<Positions, N>& space, const Walk& w, const Vec3& p, const Vec3& q,
-                               const WallImpact* impact, const PeriodicPartner& to) {
-    const double t = impact != nullptr ? impact->fraction : fraction_of(space, w, p, q);
-    const Vec3 x = w.at_start ? p : flushed(p + (q - p) * t);
-    PeriodicEntry<N> entry = periodic_entry(space, *pairs_, to, w, x, q);
+  [[gnu::noinline]] bool crosses(const Space<Positions, N>& space, Walk& w, const Vec3& p, const Vec3& q,
+                                 const WallImpact* impact) {
+    const PeriodicPartner* const partner = periodic_end(space, *pairs_, w, p, q);
+    if (partner != nullptr) cross(space, w, p, q, impact, *partner);
+    return partner != nullptr;
+  }
+
+  template <class Positions>
+  void cross(const Space<Positions, N>& space, const Walk& w, const Vec3& p, const Vec3& q, const WallImpact* impact,
+             const PeriodicPartner& to) {
+    PeriodicEntry<N> entry = periodic_entry(space, *pairs_, to, w, p, q, impact);
     if (!place(space, entry)) {  // as where a walk comes to such a cell
       s_.result.held = true;
       s_.result.invalid_cell = entry.simplex.cell;
-      return false;
+      return;
     }
     // It entered: rounding must not lead it out again.
     WallPlanes<N> planes;
     planes.add(flushed_plane(entry.plane));
     lift_off(planes, state_.position, entry.target, lift_doublings);
-    entry.target = flushed(entry.target);
-    note(w, to, t);
-    s_.slice_target = entry.target;
+    note(w, to, entry.fraction);
+    s_.slice_target = flushed(entry.target);
     const Vec3 unused = s_.slice_target - state_.position + s_.interval.later;
-    if (!in_exact_range(s_.slice_target)) return static_cast<void>(stop_out_of_range(unused)), false;
-    if (++s_.crossing_count <= options_.max_crossings) return true;
+    if (!in_exact_range(s_.slice_target)) return static_cast<void>(stop_out_of_range(unused));
+    if (++s_.crossing_count <= options_.max_crossings) return;
     ++counters_.unfinished;
     stop(unused);
-    return false;
-  }
-
-  template <class Positions>
-  double fraction_of(const Space<Positions, N>& space, const Walk& w, const Vec3& p, const Vec3& q) const {
-    const Simplex corners = space.corners(w.wall_simplex);
-    return contact_geometry(complex_.map(), corners, facet_plane(corners, w.wall_facet), w, p, q).fraction;
   }
 
   // As at a contact: near the place, inside the simplex. Returns false if the simplex is not positive.
