@@ -23,7 +23,7 @@ WORDS = [(r"\bThrows\b", "Raises"), (r"\bthrows\b", "raises"), (r"(\w)::(?=\w)",
 BY_HAND = set("""
     AddResult BodiesCheckpoint CatheterCheckpoint Cell CellFace CellHandle ContactList Dart DataArray Drops FaceHits
     HeldParticle Id ImplicitSimplex LawParticles LawResult LawSamples LeftParticle MeshData MeshFile MeshPart OrphanedParticle Patch PathPoint
-    PlaneCrossing PlanePassage RayCells RayHit ReplayResult SimplexId SolidAudit SolidCheckpoint SolidContact
+    PeriodicCrossing PlaneCrossing PlanePassage RayCells RayHit ReplayResult SimplexId SolidAudit SolidCheckpoint SolidContact
     SolidMeeting SolidMesh SolidPlacement SolidStep SphereOverlap SphereReport Stars Statistics SteinerPoints StepReplay
     StepReport StoppedParticle Subdivided Subdivision SurfaceReport SurfaceTrace Threads TouchedFaces Trace
     Transaction UpdateReport Vec3 VelocityGradient
@@ -45,6 +45,8 @@ ROWS = {
     "RayHit": f"origin hit kind {FACE} triangle patch distance point normal invalid_cell",
     "HeldParticle": "particle cell",
     "StoppedParticle": "particle unused",
+    "PeriodicCrossing": "particle pair back contacts time from_cell:from.cell from_face:from.face to_cell:to.cell "
+                        "to_face:to.face point turn",
     "OrphanedParticle": "particle place outcome position distance",
     "LeftParticle": "id status position contact",
     "SphereOverlap": f"particle {FACE} depth left point normal",

@@ -110,18 +110,18 @@ void add_arrays(py::class_<MeshData, std::shared_ptr<MeshData>>& c) {
 }
 
 void add_names_and_data(py::class_<MeshData, std::shared_ptr<MeshData>>& c) {
-  using Names = std::map<std::int32_t, std::string>;
-  const auto add_names = [&c](const char* name, Names MeshData::*member, const char* text) {
+  const auto add_copied = [&c]<class T>(const char* name, T MeshData::*member, const char* text) {
     c.def_property(
         name, [member](const MeshData& m) { return m.*member; },
-        [member](MeshData& m, Names names) {
+        [member](MeshData& m, T value) {
           const MeshUse use(m, true);
-          m.*member = std::move(names);
+          m.*member = std::move(value);
         },
         text);
   };
-  add_names("region_names", &MeshData::region_names, "{tag: name}. Reading gives a copy.");
-  add_names("patch_names", &MeshData::patch_names, "{tag: name}. Reading gives a copy.");
+  add_copied("periodic", &MeshData::periodic, "Pairs of patches, as a list of PeriodicPair. Reading gives a copy.");
+  add_copied("region_names", &MeshData::region_names, "{tag: name}. Reading gives a copy.");
+  add_copied("patch_names", &MeshData::patch_names, "{tag: name}. Reading gives a copy.");
   c.def_property(
       "point_data", [](const MeshData& m) -> Typed<"dict[str, Floats]"> { return arrays_by_name(m.point_data); },
       [](MeshData& m, const py::dict& named) {

@@ -31,6 +31,12 @@ py::array_t<double> user_data(const Handle& self, std::size_t particle) {
   return array_of(std::as_const(self.get()).user_data(particle));
 }
 
+py::array_t<double> unwrapped(const Handle& self) {
+  const Use use = self.use();
+  const std::vector<Vec3> places = self.get().unwrapped();
+  return array_of(std::span<const Vec3>(places));
+}
+
 void set_user_data(Handle& self, std::size_t particle, const std::vector<double>& values) {
   const Use use = self.use();
   check_particle(self.get(), particle);
@@ -106,6 +112,7 @@ py::array_t<bool> held(const Handle& self) {
 void bind_particles(Class& c) {
   property(c, "positions", &positions, "Of all particles, float64 (n, 3).");
   c.def_property_readonly("held", &held, about("Simulation::held", "bool (n,)."));
+  c.def("unwrapped", &unwrapped, doc("Simulation::unwrapped"));
   c.def("user_data", &user_data, py::arg("particle"),
         about("Simulation::user_data", "A copy: set_user_data() changes them."));
   c.def("set_user_data", &set_user_data, py::arg("particle"), py::arg("values"),

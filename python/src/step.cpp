@@ -48,6 +48,11 @@ void bind_step_report(py::module_& m) {
   py::class_<StepReport> c(m, "StepReport", "The report of a step: its contacts, and the particles that it stopped.");
   bind_contacts(c, [](const StepReport& r) -> const ContactList& { return r.contacts; });
   c.def_property_readonly(
+      "crossings", [](const StepReport& r) { return rows_of(r.contacts.crossings); },
+      "Periodic crossings by particle, then by time, as a structured array: particle, pair, back, contacts, time, "
+      "from_cell, from_face, to_cell, to_face, point, turn (rows of the rotation). See PeriodicCrossing in "
+      "contact.hpp.");
+  c.def_property_readonly(
       "held", [](const StepReport& r) { return rows_of(r.held); },
       "Particles that a cell kept from their step, as a structured array: particle, cell (the invalid cell, its own or "
       "one on its path; or its own blocked cell).");
@@ -57,8 +62,9 @@ void bind_step_report(py::module_& m) {
       "relative to the wall).");
   c.def_property_readonly(
       "counters", [](const StepReport& r) { return r.counters; }, doc("Counters"));
-  pickle_by_bytes(
-      c, [](StepReport& r) { return std::tie(r.contacts.contacts, r.contacts.walls, r.held, r.stopped, r.counters); });
+  pickle_by_bytes(c, [](StepReport& r) {
+    return std::tie(r.contacts.contacts, r.contacts.walls, r.contacts.crossings, r.held, r.stopped, r.counters);
+  });
 }
 
 void bind_trace(py::module_& m) {

@@ -136,5 +136,6 @@ def test_signatures_show_names_types_and_defaults() -> None:
         "update_after_edit(self, particles: Particles, orphaned: OrphanPolicy = OrphanPolicy.RELOCATE) -> UpdateReport\n")
     assert str(inspect.signature(dartcast.Environment)).startswith("(mesh, threads=0")
     assert str(inspect.signature(dartcast.records.StepOptions)) == \
-        "(max_contacts: 'int' = 16, tolerance: 'float' = 0.05, max_slices: 'int' = 256)"
+        "(max_contacts: 'int' = 16, tolerance: 'float' = 0.05, max_slices: 'int' = 256, \
+max_crossings: 'int' = 1024)"
     assert inspect.signature(dartcast.formats.BoxOptions).parameters["cells"].default == [1, 1, 1]

@@ -30,6 +30,7 @@ struct ContactAtWall : Contact {
 // Entries of rows: numbers, and arrays of them.
 inline Row3 column(const Vec3& v) { return {v.x, v.y, v.z}; }
 inline std::array<Row3, 2> column(const std::array<Vec3, 2>& v) { return {column(v[0]), column(v[1])}; }
+inline std::array<Row3, 3> column(const std::array<Vec3, 3>& v) { return {column(v[0]), column(v[1]), column(v[2])}; }
 inline std::uint32_t column(Cell c) { return c.value; }
 inline std::uint16_t column(Patch p) { return p.value; }
 template <class T>
