@@ -116,7 +116,7 @@ std::vector<std::uint32_t> sorted(std::vector<std::uint32_t> corners) {
 
 }  // namespace
 
-RigidMotion::RigidMotion(const PeriodicPair& pair) {
+PeriodicMotion::PeriodicMotion(const PeriodicPair& pair) {
   const bool finite = is_finite(pair.translate) && is_finite(pair.axis) && is_finite(pair.centre);
   if (!finite || !std::isfinite(pair.angle)) refuse(pair, "a number is not finite");
   to_ = pair.translate;
@@ -133,27 +133,27 @@ RigidMotion::RigidMotion(const PeriodicPair& pair) {
            Vec3{n.z * n.x * d - n.y * s, n.z * n.y * d + n.x * s, c + n.z * n.z * d}};
 }
 
-RigidMotion RigidMotion::inverse() const {
-  RigidMotion back = *this;
+PeriodicMotion PeriodicMotion::inverse() const {
+  PeriodicMotion back = *this;
   back.rows_ = {Vec3{rows_[0].x, rows_[1].x, rows_[2].x}, Vec3{rows_[0].y, rows_[1].y, rows_[2].y},
                 Vec3{rows_[0].z, rows_[1].z, rows_[2].z}};
   std::swap(back.from_, back.to_);
   return back;
 }
 
-RigidMotion RigidMotion::then(const RigidMotion& next) const {
-  RigidMotion both = *this;
-  const RigidMotion rows_of_this = inverse();  // its rows are the columns of this
+PeriodicMotion PeriodicMotion::then(const PeriodicMotion& next) const {
+  PeriodicMotion both = *this;
+  const PeriodicMotion rows_of_this = inverse();  // its rows are the columns of this
   for (unsigned i = 0; i < 3; ++i) both.rows_[i] = rows_of_this.vector(next.rows_[i]);
   both.to_ = next.point(to_);
   return both;
 }
 
-RigidMotion RigidMotion::power(double times) const {
-  RigidMotion result = *this;
+PeriodicMotion PeriodicMotion::power(double times) const {
+  PeriodicMotion result = *this;
   result.rows_ = {Vec3{1.0, 0.0, 0.0}, Vec3{0.0, 1.0, 0.0}, Vec3{0.0, 0.0, 1.0}};
   result.to_ = from_;
-  RigidMotion square = *this;
+  PeriodicMotion square = *this;
   for (auto left = static_cast<std::uint64_t>(times); left != 0; left /= 2) {
     if (left % 2 != 0) result = result.then(square);
     square = square.then(square);
@@ -204,7 +204,7 @@ std::vector<PeriodicFaces::Side> PeriodicFaces::sides(const CombinatorialMap& ma
 void PeriodicFaces::add_pair(std::uint16_t number, const CombinatorialMap& map, std::span<const Vec3> positions) {
   const PeriodicPair& pair = pairs_[number];
   check(pair, map.dimension());
-  const RigidMotion there(pair);
+  const PeriodicMotion there(pair);
   ways_.push_back({there, there.inverse()});
   const std::vector<Side> a = sides(map, map.patch(pair.a));
   const std::vector<Side> b = sides(map, map.patch(pair.b));

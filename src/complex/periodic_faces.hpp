@@ -16,20 +16,20 @@
 namespace dartcast::detail {
 
 /// A rotation about a point and a translation: x goes to R (x - from) + to. It is exact where all numbers are.
-class RigidMotion {
+class PeriodicMotion {
  public:
   /// From a to b. Throws InvalidMesh if a number of the pair is not finite, or an angle has no axis.
-  explicit RigidMotion(const PeriodicPair& pair);
-  [[nodiscard]] RigidMotion inverse() const;
+  explicit PeriodicMotion(const PeriodicPair& pair);
+  [[nodiscard]] PeriodicMotion inverse() const;
   /// The motion made so many times: a whole number, from 0 to 2^53. Cost: logarithmic.
-  [[nodiscard]] RigidMotion power(double times) const;
+  [[nodiscard]] PeriodicMotion power(double times) const;
 
   [[nodiscard]] Vec3 vector(const Vec3& v) const { return {dot(rows_[0], v), dot(rows_[1], v), dot(rows_[2], v)}; }
   [[nodiscard]] Vec3 point(const Vec3& x) const { return vector(x - from_) + to_; }
   [[nodiscard]] const std::array<Vec3, 3>& rows() const { return rows_; }
 
  private:
-  [[nodiscard]] RigidMotion then(const RigidMotion& next) const;
+  [[nodiscard]] PeriodicMotion then(const PeriodicMotion& next) const;
 
   std::array<Vec3, 3> rows_ = {Vec3{1.0, 0.0, 0.0}, Vec3{0.0, 1.0, 0.0}, Vec3{0.0, 0.0, 1.0}};
   Vec3 from_, to_;
@@ -61,7 +61,7 @@ class PeriodicFaces {
   }
   /// The partner of a vertex of the face that leads there; invalid for a Steiner point without one.
   [[nodiscard]] Vertex partner(const PeriodicPartner& to, Vertex v) const;
-  [[nodiscard]] const RigidMotion& motion(const PeriodicPartner& to) const {
+  [[nodiscard]] const PeriodicMotion& motion(const PeriodicPartner& to) const {
     const Ways& ways = ways_[to.pair];
     return to.back ? ways.back : ways.there;
   }
@@ -71,7 +71,7 @@ class PeriodicFaces {
 
  private:
   struct Ways {
-    RigidMotion there, back;
+    PeriodicMotion there, back;
     double tolerance = 0.0;  // a length
     std::size_t faces = 0;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> corners{};              // of a and b

@@ -67,7 +67,7 @@ Vec3 PeriodicImages::unwrapped(const Vec3& position, std::span<const double> use
   for (std::size_t pair = columns_.size(); pair-- > 0;) {
     if (columns_[pair] == none) continue;
     const double count = user_data[columns_[pair]];
-    const detail::RigidMotion& back = pairs()->motion({{}, static_cast<std::uint16_t>(pair), count > 0.0});
+    const detail::PeriodicMotion& back = pairs()->motion({{}, static_cast<std::uint16_t>(pair), count > 0.0});
     x = back.power(std::abs(count)).point(x);
   }
   return x;

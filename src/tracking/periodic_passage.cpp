@@ -61,7 +61,7 @@ PeriodicEntry<N> periodic_entry(const Space<Positions, N>& space, const Periodic
   const double fraction = w.at_start ? 0.0 : impact != nullptr ? impact->fraction : fraction_of(space, w, p, q);
   const Vec3 x = w.at_start ? p : flushed(p + (q - p) * fraction);
   const Vec3 shift = shift_at(space, pairs, to, w, x);
-  const RigidMotion& motion = pairs.motion(to);
+  const PeriodicMotion& motion = pairs.motion(to);
   PeriodicEntry<N> entry{};
   entry.point = flushed(motion.point(x) + shift);
   entry.target = flushed(motion.point(q) + shift);

@@ -354,7 +354,7 @@ class StepRun {
   // of another image: nothing joins them from now on.
   void note(const Walk& w, const PeriodicPartner& to, double t) {
     TimeInterval& i = s_.interval;
-    const RigidMotion& motion = pairs_->motion(to);
+    const PeriodicMotion& motion = pairs_->motion(to);
     i.begin += t * (i.end - i.begin);
     i.later = motion.vector(i.later);
     s_.target = flushed(motion.point(s_.target));
