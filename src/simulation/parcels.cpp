@@ -43,8 +43,8 @@ Parcel Parcels::parcel(const ParticleSet& set, std::size_t i) const {
   return {count, static_cast<double>(count) * mass};
 }
 
-// A contact's displacement leads to the end that was planned for the segment. It begins at the particle's last contact,
-// or else where the segment does.
+// The way that is left at a contact takes the rest of the segment. If a contact is at the end of its segment, none is left.
+// Its displacement then began at the particle's last contact, or else where the segment did.
 std::vector<Impact> impacts_of(const SimulationStep& step, const SimulationOptions& options) {
   const ContactList& list = step.report.contacts;
   std::vector<Impact> impacts;
@@ -53,15 +53,17 @@ std::vector<Impact> impacts_of(const SimulationStep& step, const SimulationOptio
   for (std::size_t i = 0; i < list.contacts.size(); ++i) {
     const Contact& c = list.contacts[i];
     const double segment_end = std::max(1.0, std::ceil(c.time_of_impact * segments)) / segments;
-    double begin = segment_end - 1.0 / segments;
-    if (i > 0 && step.contact_ids[i - 1] == step.contact_ids[i])
+    const bool is_at_end = !(c.time_of_impact < segment_end);
+    double begin = is_at_end ? segment_end - 1.0 / segments : c.time_of_impact;
+    if (is_at_end && i > 0 && step.contact_ids[i - 1] == step.contact_ids[i])
       begin = std::max(begin, list.contacts[i - 1].time_of_impact);
+    const Vec3& way = is_at_end ? c.displacement : c.unused;
     Impact impact = {step.parcels[i].number, step.parcels[i].mass};
-    const double length = norm(c.displacement);
+    const double length = norm(way);
     if (length > 0.0 && begin < segment_end) {
       const double speed = length / ((segment_end - begin) * options.dt);
       impact.energy = 0.5 * impact.mass * speed * speed;
-      impact.sine = std::min(std::abs(dot(c.displacement, list.walls_of(c).front().normal)) / length, 1.0);
+      impact.sine = std::min(std::abs(dot(way, list.walls_of(c).front().normal)) / length, 1.0);
     }
     impacts.push_back(impact);
   }
