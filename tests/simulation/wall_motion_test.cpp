@@ -7,6 +7,7 @@
 #include "dartcast/audit.hpp"
 #include "dartcast/deformation.hpp"
 #include "dartcast/error.hpp"
+#include "dartcast/scene.hpp"
 #include "dartcast/simulation.hpp"
 #include "support/meshes.hpp"
 #include "support/tier.hpp"
