@@ -281,6 +281,7 @@ rotate = [0.3, 0.0, 0.0]
 at = [3.0, 3.0, 5.0]
 pivot = [3.0, 3.0, 4.0]
 catch_up = true
+meets = []
 moves = [{ until = 1.0, velocity = [0.0, 0.0, 9.0], turn = [0.0, 0.0, 2.0] }]
 [motion]
 dt = 0.02
