@@ -218,8 +218,9 @@ TEST(Periodic, QuarterTurnsEndAtTheBitsOfAWholeSquare) {
       if (c.pair != 0) continue;
       turns[c.particle] += c.back ? -1 : 1;
       const Vec3 turned = quarter_turns({1.0, 2.0, 3.0}, c.back ? -1 : 1);
-      ASSERT_EQ(Vec3(dot(c.turn[0], {1.0, 2.0, 3.0}), dot(c.turn[1], {1.0, 2.0, 3.0}), dot(c.turn[2], {1.0, 2.0, 3.0})),
-                turned);
+      const Vec3 v = {1.0, 2.0, 3.0};
+      const Vec3 by_rows = {dot(c.turn[0], v), dot(c.turn[1], v), dot(c.turn[2], v)};
+      ASSERT_EQ(by_rows, turned);
     }
     for (std::size_t i = 0; i < starts.size(); ++i)
       ASSERT_EQ(quarter_turns(ones[i].position, -turns[i]), alls[i].position) << "particle " << i << " step " << step;
