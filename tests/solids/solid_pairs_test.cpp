@@ -67,7 +67,6 @@ struct Heap {
 
 TEST(SolidPairs, NothingIsPiercedInAHeap) {
   std::size_t meetings = 0;
-  std::size_t walls_stopped = 0;
   double made = 0.0;
   double steps = 0.0;
   for (std::uint64_t seed = 1; seed <= (test::sanitized() ? 1 : 3); ++seed) {
@@ -96,7 +95,6 @@ TEST(SolidPairs, NothingIsPiercedInAHeap) {
         EXPECT_NEAR(std::accumulate(m.other_weights.begin(), m.other_weights.end(), 0.0), 1.0, 1e-12);
       }
       meetings += step.meetings.size();
-      walls_stopped += step.walls_made < 1.0 ? 1 : 0;
       made += std::accumulate(step.made.begin(), step.made.end(), 0.0);
       steps += static_cast<double>(step.made.size());
     }
