@@ -194,7 +194,8 @@ def of_states() -> Calls:
         "Simulation.set_user_data": lambda: own.set_user_data(3, [1.0]),
         "Simulation.user_data: refused": refused(lambda: own.user_data(99)),
         "Simulation.set_user_data: refused": refused(lambda: own.set_user_data(3, [1.0, 2.0])),
-        "Simulation.energy": own.energy, "Simulation.audit": own.audit, "Simulation.state_hash": own.state_hash,
+        "Simulation.energy": own.energy, "Simulation.unwrapped": own.unwrapped,
+        "Simulation.audit": own.audit, "Simulation.state_hash": own.state_hash,
         "Simulation.totals_of_all": own.totals_of_all, "Simulation.alive": own.alive,
     }
 
