@@ -10,10 +10,10 @@
 #include "base/random.hpp"
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/error.hpp"
-#include "dartcast/generators.hpp"
 #include "dartcast/scene_file.hpp"
 #include "dartcast/simulation.hpp"
 #include "support/expectations.hpp"
+#include "support/meshes.hpp"
 #include "support/random_vectors.hpp"
 #include "support/with_response.hpp"
 
@@ -24,12 +24,7 @@ constexpr Material ball = {0.1, 1200.0, 0.0};
 
 double mass() { return pi / 6.0 * ball.density * ball.diameter * ball.diameter * ball.diameter; }
 
-MeshData box() {
-  BoxOptions options;
-  options.cells = {4, 4, 4};
-  options.size = {4.0, 4.0, 4.0};
-  return generate_box(options);
-}
+MeshData box() { return cube_of(4, 4.0); }
 
 StatisticsOptions everything() {
   StatisticsOptions o;
