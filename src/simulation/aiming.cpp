@@ -150,11 +150,10 @@ void Aiming::add_eddies(const Segment& segment, ParticleSet& set) {
 }
 
 // Linear in the particle's simplex. A sliver has no gradient.
-Aiming::Diffusivity Aiming::diffusivity_at(const ParticleState& state, bool moving) const {
-  if (options_.diffusivity.empty()) return {options_.diffusion, {}};
+Aiming::Diffusivity Aiming::diffusivity_at(const SampledFields::Component& of, const ParticleState& state,
+                                           bool moving) const {
   const CellComplex& complex = environment_.complex();
   const Corners now = complex.corners(state.at());
-  const auto [field, number] = sampled_.component(options_.diffusivity);
   const Weights at = detail::barycentric(moving ? complex.previous_corners(state.at()) : now, state.position);
   const unsigned corners = complex.map().dimension() + 1;
   std::array<double, 4> values{};
@@ -162,8 +161,8 @@ Aiming::Diffusivity Aiming::diffusivity_at(const ParticleState& state, bool movi
   for (unsigned k = 0; k < corners; ++k) {
     Weights corner{};
     corner[k] = 1.0;
-    const Vec3 v = field->at(complex, state.at(), corner, now);
-    values[k] = number == 0 ? v.x : number == 1 ? v.y : v.z;
+    const Vec3 v = of.field->at(complex, state.at(), corner, now);
+    values[k] = of.number == 0 ? v.x : of.number == 1 ? v.y : v.z;
     value += at[k] * values[k];
   }
   // In the plane the corners have a fourth one above it, which must not tilt the gradient.
@@ -177,7 +176,8 @@ Aiming::Diffusivity Aiming::diffusivity_at(const ParticleState& state, bool movi
 }
 
 void Aiming::diffuse(const Segment& segment, std::span<const std::uint64_t> ids) {
-  const double length = options_.diffusivity.empty() ? std::sqrt(2.0 * options_.diffusion * segment.dt) : 1.0;
+  const SampledFields::Component of = sampled_.component(options_.diffusivity);
+  const double length = of.field == nullptr ? std::sqrt(2.0 * options_.diffusion * segment.dt) : 1.0;
   const RandomMoment moment = {options_.seed, RandomPurpose::diffusion, moment_};
   const bool planar = environment_.map().dimension() == 2;
   parallel_for(targets_.size(), aim_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
@@ -186,8 +186,8 @@ void Aiming::diffuse(const Segment& segment, std::span<const std::uint64_t> ids)
     detail::draw_ways({moment, length, planar, ids.subspan(begin, size), std::span(ways).first(size)});
     for (std::size_t i = begin; i < end; ++i) {
       if (segment.statuses[i] != ParticleStatus::alive || segment.particles[i].held) continue;
-      if (!options_.diffusivity.empty()) {
-        const Diffusivity d = diffusivity_at(segment.particles[i], segment.moving);
+      if (of.field != nullptr) {
+        const Diffusivity d = diffusivity_at(of, segment.particles[i], segment.moving);
         ways[i - begin] = ways[i - begin] * std::sqrt(2.0 * d.value * segment.dt) + d.gradient * segment.dt;
       }
       targets_[i] = flushed(targets_[i] + ways[i - begin]);

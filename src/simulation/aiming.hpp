@@ -81,7 +81,8 @@ class Aiming {
     Vec3 gradient;       // m / s
   };
   [[nodiscard]] bool diffuses() const { return options_.diffusion > 0.0 || !options_.diffusivity.empty(); }
-  [[nodiscard]] Diffusivity diffusivity_at(const ParticleState& state, bool moving) const;
+  [[nodiscard]] Diffusivity diffusivity_at(const SampledFields::Component& of, const ParticleState& state,
+                                           bool moving) const;
   void diffuse(const Segment& segment, std::span<const std::uint64_t> ids);
   [[nodiscard]] ForceStep::Fields fields() const;
   void aim_one(const Segment& segment, std::size_t i);

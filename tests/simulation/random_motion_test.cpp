@@ -10,6 +10,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/normal_deviates.hpp"
@@ -266,22 +267,29 @@ double surviving(double behind, double dt_d) {
 
 // D grows fivefold along the box. Without the drift five times as many would be where D is low.
 TEST(Diffusion, InAFieldKeepsUniformCloudsUniform) {
-  Scene scene;
+  const auto scene_of = [](MeshData mesh) {
+    std::vector<double> d;
+    for (const Vec3& x : mesh.points) d.push_back(0.05 * (1.0 + x.x));
+    mesh.point_data.push_back({"D", 1, d});
+    Scene scene;
+    scene.environment.mesh = std::move(mesh);
+    scene.contact.general = Reflect{1.0};
+    scene.motion.dt = 0.05;
+    scene.motion.sample = {"D"};
+    scene.motion.diffusivity = "D";
+    scene.particles.push_back({RandomParticles{4000}, {}, 0.0, {}});
+    return scene;
+  };
   BoxOptions box;
   box.cells = {8, 2, 2};
   box.size = {4.0, 1.0, 1.0};
-  MeshData mesh = generate_box(box);
-  std::vector<double> d;
-  for (const Vec3& x : mesh.points) d.push_back(0.05 * (1.0 + x.x));
-  mesh.point_data.push_back({"D", 1, d});
-  scene.environment.mesh = mesh;
-  scene.contact.general = Reflect{1.0};
-  scene.motion.dt = 0.05;
-  scene.motion.sample = {"D"};
-  scene.motion.diffusivity = "D";
-  scene.particles.push_back({RandomParticles{4000}, {}, 0.0, {}});
+  RectangleOptions plane;
+  plane.cells = {8, 2};
+  plane.size = std::array{4.0, 1.0};
+  Scene space = scene_of(generate_box(box));
   std::vector<std::string> states;
-  for (const unsigned threads : {1U, 3U}) {
+  for (const auto& [scene, threads] :
+       {std::pair{space, 1U}, std::pair{space, 3U}, std::pair{scene_of(generate_rectangle(plane)), 1U}}) {
     Simulation simulation(scene, Threads{threads});
     for (int step = 0; step < 160; ++step) simulation.step();
     states.push_back(simulation.state_hash().hex());
@@ -293,8 +301,8 @@ TEST(Diffusion, InAFieldKeepsUniformCloudsUniform) {
     EXPECT_LT(chi_squared, 24.3);  // 0.1% of such clouds are beyond it, with 7 degrees of freedom
   }
   EXPECT_EQ(states[0], states[1]);
-  scene.motion.diffusivity = "E";
-  Simulation unknown(scene);
+  space.motion.diffusivity = "E";
+  Simulation unknown(space);
   test::expect_parts(test::refusal([&] { unknown.step(); }), {"diffusivity", "\"E\""});
 }
 
