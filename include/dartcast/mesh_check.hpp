@@ -41,6 +41,7 @@ struct MeshReport {
   std::map<std::string, std::size_t> cells;    ///< cells by type
   std::map<std::string, std::size_t> regions;  ///< cells by region; the tag is the name of a region without one
   std::size_t parts = 0;                       ///< groups of cells connected by faces
+  std::vector<PeriodicPair> periodic;          ///< the mesh's pairs of patches
   std::vector<Finding> repairs;
   std::vector<Finding> warnings;
   std::vector<Finding> defects;

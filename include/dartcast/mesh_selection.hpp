@@ -27,17 +27,17 @@ void select_free_values(MeshData& mesh, const std::string& array, std::span<cons
 
 // Selection of the groups of wall faces to distinguish.
 
-/// Keeps the patch faces of the named patches, and drops the others. A patch is named by its name or, if it has none,
-/// by its tag in digits. Throws InvalidMesh, which lists the patches that exist, if a name is none of them. Then the
-/// mesh is unchanged.
+/// Keeps the patch faces of the named patches and of periodic pairs, and drops the others. A patch is named by its name
+/// or, if it has none, by its tag in digits. Throws InvalidMesh, which lists the patches that exist, if a name is none of
+/// them. Then the mesh is unchanged.
 void select_patches(MeshData& mesh, std::span<const std::string> names);
 
-/// Makes walls of the faces of the named patches, also of those between two free cells (MeshData::baffle_tags). Patches
-/// are named, and errors thrown, as by select_patches().
+/// Makes walls of the faces of the named patches, also of those between two free cells (MeshData::baffle_tags) and of
+/// those of a periodic pair, which ends. Patches are named, and errors thrown, as by select_patches().
 void select_walls(MeshData& mesh, std::span<const std::string> names);
 
-/// Divides the walls into patches at sharp edges. They replace the patches of the mesh. Walls are the faces of free
-/// cells without a free cell behind them: those on the boundary, and those between free and blocked cells. Two walls
+/// Divides the walls into patches at sharp edges. They replace the patches of the mesh, and its periodic pairs end. Walls
+/// are the faces of free cells without a free cell behind them: those on the boundary, and those between free and blocked cells. Two walls
 /// with an edge in common (in the plane: with an end) may be in one patch. For that, their normals differ by at most
 /// `degrees`, and the edge belongs to these two alone. A patch is all walls that are connected in this way. The normal
 /// of a warped face is that of its projected area.

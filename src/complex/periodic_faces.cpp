@@ -281,7 +281,10 @@ void PeriodicFaces::join(std::uint16_t number, CellFace a, CellFace b, const Com
 
 void refuse_periodic(const CellComplex& complex, const char* what) {
   if (complex.periodic() != nullptr)
-    throw InvalidArgument(fmt::format("{}: they cannot be in a scene with periodic pairs: leave either out", what));
+    throw InvalidArgument(
+        fmt::format("{}: they cannot be in a scene with periodic pairs: leave either out. Pairs that the mesh's file "
+                    "names are walls if `walls` of the scene names a patch of them",
+                    what));
 }
 
 }  // namespace dartcast::detail

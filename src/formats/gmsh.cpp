@@ -1,4 +1,5 @@
-// Reads Gmsh's .msh section by section; gmsh_2.cpp and gmsh_4.cpp read those that differ between versions.
+// Reads Gmsh's .msh section by section; gmsh_2.cpp and gmsh_4.cpp read those that differ between versions, and
+// gmsh_periodic.cpp the last one.
 #include "formats/gmsh.hpp"
 
 #include <fmt/format.h>
@@ -96,6 +97,8 @@ bool read_section(std::string_view name, NumberReader& in, Model& model, Version
     read_nodes(in, model, version, name == "ParametricNodes");
   } else if (name == "Elements" || name == "ELM") {
     read_elements(in, model, version);
+  } else if (name == "Periodic" && model.nodes.closed() && !(version == Version::v40 && in.binary)) {
+    read_periodic(in, model, version == Version::v41);
   } else {
     return false;
   }
@@ -142,6 +145,7 @@ ParsedMesh parse_gmsh(std::string_view content, bool linearise) {
   }
   add_finding(model.parsed.warnings, model.repeated);
   add_finding(model.parsed.warnings, model.unknown);
+  add_periodic_pairs(model);
   finish(model.parsed);
   return std::move(model.parsed);
 }

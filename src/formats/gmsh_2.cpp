@@ -9,6 +9,12 @@ namespace {
 /// Node numbers are signed in the file; a negative one names no node.
 std::uint64_t node_number(NumberReader& in) { return static_cast<std::uint64_t>(in.int32("a node number")); }
 
+// An element of first or second order has it.
+int dimension_of(int type) {
+  if (type == 1 || type == 8) return 1;
+  return type == 2 || type == 3 || type == 9 || type == 10 || type == 16 ? 2 : 3;
+}
+
 }  // namespace
 
 void read_nodes_2(NumberReader& in, Model& model, bool parametric) {
@@ -64,6 +70,7 @@ void read_elements_2(NumberReader& in, Model& model) {
       for (std::int32_t t = 0; t < tags; ++t) {
         const std::int32_t tag = in.int32("a tag");
         if (t == 0) physical = tag;
+        if (t == 1) model.physical.emplace(std::pair{dimension_of(type), tag}, physical);
       }
       nodes.clear();
       for (int k = 0; k < count; ++k) nodes.push_back(node_number(in));

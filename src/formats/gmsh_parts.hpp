@@ -10,6 +10,7 @@
 
 #include "formats/file_text.hpp"
 #include "formats/parsed_mesh.hpp"
+#include "mesh/periodic_pairs.hpp"
 
 namespace dartcast::gmsh {
 
@@ -62,7 +63,15 @@ struct Model {
   NodeTable nodes;
   std::size_t elements = 0;
   bool repeats_elements = true;                                   ///< versions 1 and 2
-  std::map<std::pair<int, std::int32_t>, std::int32_t> physical;  ///< version 4: (dimension, entity) to physical group
+  std::map<std::pair<int, std::int32_t>, std::int32_t> physical;  ///< (dimension, entity) to physical group
+
+  struct Periodic {
+    int dimension = 0;
+    std::int32_t entity = 0;
+    std::int32_t master = 0;
+    std::vector<PartnerPlaces> places;  ///< of the master's nodes, and of the entity's
+  };
+  std::vector<Periodic> periodic;
 
   /// Adds an element of a known type whose nodes are given by number. Versions 1 and 2 have an element once for each of
   /// its groups, one after the other: only the first counts.
@@ -88,5 +97,10 @@ void read_elements_4(NumberReader& in, Model& model, bool v41);
 void read_nodes_2(NumberReader& in, Model& model, bool parametric);
 void read_elements_1(NumberReader& in, Model& model);
 void read_elements_2(NumberReader& in, Model& model);
+
+/// The section behind the elements.
+void read_periodic(NumberReader& in, Model& model, bool v41);
+/// Adds the pairs of patches whose entities are periodic. A warning counts patches that no one motion takes to another.
+void add_periodic_pairs(Model& model);
 
 }  // namespace dartcast::gmsh

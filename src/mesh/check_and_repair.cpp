@@ -20,6 +20,7 @@ std::size_t source_of(const MeshData& mesh, std::size_t c) { return mesh.source.
 
 void count_contents(const MeshData& mesh, MeshReport& report) {
   report.points = mesh.points.size();
+  report.periodic = mesh.periodic;
   std::size_t by_type[cell_type_names.size()] = {};
   for (const CellType t : mesh.types) ++by_type[static_cast<std::size_t>(t)];
   for (std::size_t t = 0; t < cell_type_names.size(); ++t) {

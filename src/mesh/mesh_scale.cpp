@@ -61,4 +61,12 @@ MeshScale mesh_scale(const MeshData& mesh, Threads threads, std::span<const std:
   return all;
 }
 
+void scale_mesh(MeshData& mesh, double factor) {
+  for (Vec3& x : mesh.points) x *= factor;
+  for (PeriodicPair& pair : mesh.periodic) {
+    pair.translate *= factor;
+    pair.centre *= factor;
+  }
+}
+
 }  // namespace dartcast

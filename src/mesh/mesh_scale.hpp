@@ -33,4 +33,7 @@ struct MeshScale {
 MeshScale mesh_scale(const MeshData& mesh, Threads threads = {}, std::span<const std::uint32_t> parts = {},
                      std::uint32_t part = 0);
 
+/// Multiplies all lengths of a mesh: its points, and the ways of its periodic pairs.
+void scale_mesh(MeshData& mesh, double factor);
+
 }  // namespace dartcast

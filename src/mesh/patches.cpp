@@ -18,6 +18,7 @@
 #include "dartcast/mesh_selection.hpp"
 #include "mesh/baffles.hpp"
 #include "mesh/faces.hpp"
+#include "mesh/periodic_pairs.hpp"
 
 namespace dartcast {
 namespace {
@@ -138,7 +139,9 @@ std::set<std::int32_t> tags_of_patches(const MeshData& mesh, std::span<const std
 }  // namespace
 
 void select_patches(MeshData& mesh, std::span<const std::string> names) {
-  std::set<std::int32_t> kept = tags_of_patches(mesh, names);
+  std::vector<std::string> all_names(names.begin(), names.end());
+  for (const PeriodicPair& pair : mesh.periodic) all_names.insert(all_names.end(), {pair.a, pair.b});
+  std::set<std::int32_t> kept = tags_of_patches(mesh, all_names);
   for (const std::int32_t tag : mesh.baffle_tags) {
     if (kept.insert(tag).second) mesh.patch_names[tag] = "";
   }
@@ -158,6 +161,7 @@ void select_walls(MeshData& mesh, std::span<const std::string> names) {
   for (const std::int32_t tag : tags) {
     if (!is_baffle(mesh, tag)) mesh.baffle_tags.push_back(tag);
   }
+  end_pairs(mesh, names);
 }
 
 void divide_walls(MeshData& mesh, double degrees) {
@@ -177,6 +181,7 @@ void divide_walls(MeshData& mesh, double degrees) {
   mesh.patch_order.clear();
   mesh.patch_names.clear();
   mesh.baffle_tags.clear();
+  mesh.periodic.clear();
   std::map<std::uint32_t, std::int32_t> tags;
   for (const std::uint32_t w : order) {
     const auto [found, fresh] = tags.try_emplace(parts.root(w), static_cast<std::int32_t>(tags.size() + 1));

@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "complex/periodic_faces.hpp"
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/map_edits.hpp"
 #include "mesh/mesh_scale.hpp"
+#include "output/mesh_report_text.hpp"
 
 namespace dartcast {
 
@@ -131,26 +131,12 @@ std::string list(const Counts& counts) {
 }
 
 nlohmann::ordered_json periodic_json(const std::vector<PeriodicInfo>& periodic) {
-  const auto list = [](const Vec3& v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
   auto json = nlohmann::ordered_json::array();
   for (const auto& [pair, faces] : periodic) {
-    json.push_back({{"a", pair.a}, {"b", pair.b}, {"faces", faces}, {"translate", list(pair.translate)}});
-    if (pair.angle == 0.0) continue;
-    json.back()["axis"] = list(pair.axis);
-    json.back()["centre"] = list(pair.centre);
-    json.back()["angle"] = pair.angle;
+    json.push_back(pair_json(pair));
+    json.back()["faces"] = faces;
   }
   return json;
-}
-
-std::string periodic_text(const PeriodicInfo& info) {
-  const auto& [pair, faces] = info;
-  const auto text = [](const Vec3& v) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x, v.y, v.z); };
-  std::string out = fmt::format("periodic: {} leads to {}, {} faces", pair.a, pair.b, faces);
-  if (pair.angle != 0.0)
-    out += fmt::format(", turned by {} degrees around {} at {}", pair.angle, text(pair.axis), text(pair.centre));
-  if (pair.angle == 0.0 || pair.translate != Vec3{}) out += fmt::format(", moved by {}", text(pair.translate));
-  return out + "\n";
 }
 
 }  // namespace
@@ -220,7 +206,7 @@ std::string info_text(const MeshInfo& i) {
   out += fmt::format("wall {}: {}{}{}\n", plane ? "edges" : "faces", i.wall_faces,
                      i.patches.empty() ? "" : ", by patch: ", list(i.patches));
   if (i.inner_walls > 0) out += fmt::format("inner walls: {}, each one of these from both sides\n", i.inner_walls);
-  for (const PeriodicInfo& pair : i.periodic) out += periodic_text(pair);
+  for (const auto& [pair, faces] : i.periodic) out += pair_text(pair, faces);
   for (const auto& [name, p] : i.patch_places) {
     out += fmt::format("patch {}: {} {:.6g}, centre ({:.6g}, {:.6g}, {:.6g})\n", name, plane ? "length" : "area",
                        p.size, p.centre.x, p.centre.y, p.centre.z);

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <nlohmann/json.hpp>
 #include <vector>
 
 namespace dartcast {
@@ -37,19 +36,40 @@ std::string counts(const std::map<std::string, std::size_t>& items) {
 
 }  // namespace
 
+nlohmann::ordered_json pair_json(const PeriodicPair& pair) {
+  const auto list = [](const Vec3& v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
+  nlohmann::ordered_json json = {{"a", pair.a}, {"b", pair.b}, {"translate", list(pair.translate)}};
+  if (pair.angle == 0.0) return json;
+  json["axis"] = list(pair.axis);
+  json["centre"] = list(pair.centre);
+  json["angle"] = pair.angle;
+  return json;
+}
+
+std::string pair_text(const PeriodicPair& pair, std::size_t faces) {
+  const auto text = [](const Vec3& v) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x, v.y, v.z); };
+  std::string out = fmt::format("periodic: {} leads to {}", pair.a, pair.b);
+  if (faces > 0) out += fmt::format(", {} faces", faces);
+  if (pair.angle != 0.0)
+    out += fmt::format(", turned by {:.9g} degrees around {} at {}", pair.angle, text(pair.axis), text(pair.centre));
+  if (pair.angle == 0.0 || pair.translate != Vec3{}) out += fmt::format(", moved by {}", text(pair.translate));
+  return out + "\n";
+}
+
 std::string report_json(const MeshReport& report) {
-  const nlohmann::ordered_json json = {{"file", report.file},
-                                       {"format", report.format},
-                                       {"dimension", report.dimension},
-                                       {"points", report.points},
-                                       {"cells", report.cells},
-                                       {"regions", report.regions},
-                                       {"parts", report.parts},
-                                       {"valid", report.valid()},
-                                       {"verdict", verdict_name(report.verdict())},
-                                       {"repairs", findings_json(report.repairs)},
-                                       {"warnings", findings_json(report.warnings)},
-                                       {"defects", findings_json(report.defects)}};
+  nlohmann::ordered_json json = {{"file", report.file},
+                                 {"format", report.format},
+                                 {"dimension", report.dimension},
+                                 {"points", report.points},
+                                 {"cells", report.cells},
+                                 {"regions", report.regions},
+                                 {"parts", report.parts},
+                                 {"valid", report.valid()},
+                                 {"verdict", verdict_name(report.verdict())},
+                                 {"repairs", findings_json(report.repairs)},
+                                 {"warnings", findings_json(report.warnings)},
+                                 {"defects", findings_json(report.defects)}};
+  for (const PeriodicPair& pair : report.periodic) json["periodic"].push_back(pair_json(pair));
   return json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
@@ -61,6 +81,7 @@ std::string report_text(const MeshReport& report) {
                        report.surface ? "; a surface in space" : (report.dimension == 2 ? "; a planar mesh (2D)" : ""));
   }
   if (!report.regions.empty()) out += fmt::format("regions: {}\n", counts(report.regions));
+  for (const PeriodicPair& pair : report.periodic) out += pair_text(pair);
   append_findings(out, "repaired", report.repairs);
   append_findings(out, "warning", report.warnings);
   append_findings(out, "defect", report.defects);

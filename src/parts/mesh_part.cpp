@@ -27,9 +27,6 @@ MeshPart mesh_part(const MeshData& whole, std::span<const std::uint32_t> owners,
     if (owner >= parts || part >= parts)
       throw InvalidArgument(fmt::format("mesh_part: there is no part {} of {}", std::max(owner, part), parts));
   }
-  if (!whole.periodic.empty())
-    throw InvalidArgument(
-        "mesh_part: a mesh with periodic pairs cannot be divided into parts: share the particles instead");
   PartCutter cutter(whole, owners, parts);
   return cutter.cut(cutter.cells_of(part), part);
 }

@@ -4,6 +4,8 @@
 // have lost the cell behind them.
 #include "parts/part_cutter.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -11,6 +13,7 @@
 #include <utility>
 
 #include "dartcast/combinatorial_map.hpp"
+#include "dartcast/error.hpp"
 #include "mesh/baffles.hpp"
 
 namespace dartcast {
@@ -73,7 +76,13 @@ std::int32_t unknown_tag_of(const MeshData& mesh) {
 }
 
 PartCutter::PartCutter(const MeshData& whole, std::span<const std::uint32_t> owners, std::uint32_t parts)
-    : PartCutter(whole, nullptr, owners, parts) {}
+    : PartCutter(whole, nullptr, owners, parts) {
+  if (!whole.periodic.empty())
+    throw InvalidArgument(
+        fmt::format("a mesh with periodic pairs (\"{}\" and \"{}\") cannot be divided into parts: share the particles "
+                    "instead, or make walls of the pairs (`walls` in a scene)",
+                    whole.periodic.front().a, whole.periodic.front().b));
+}
 
 PartCutter::PartCutter(const MeshPart& from, std::span<const std::uint32_t> owners)
     : PartCutter(from.mesh, &from, owners, from.parts) {}

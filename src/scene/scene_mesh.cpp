@@ -13,6 +13,7 @@
 #include "formats/file_series.hpp"
 #include "formats/scene_files.hpp"
 #include "formats/skip_in_file.hpp"
+#include "mesh/mesh_scale.hpp"
 #include "mesh/patch_walls.hpp"
 #include "scene/kept_mesh.hpp"
 #include "simulation/scene_environment.hpp"
@@ -35,7 +36,7 @@ MeshFile load_source(const MeshSource& source, const ReadOptions& options) {
 // Points are rounded: what was positive may be flat then.
 void scale_points(MeshFile& file, double scale) {
   if (scale == 1.0 || file.mesh.types.empty()) return;
-  for (Vec3& x : file.mesh.points) x *= scale;
+  scale_mesh(file.mesh, scale);
   if (file.report.valid()) file.report.defects = check_and_repair(file.mesh).defects;
 }
 

@@ -11,6 +11,7 @@
 #include "dartcast/mesh_selection.hpp"
 #include "dartcast/scene_file.hpp"
 #include "formats/format_table.hpp"
+#include "mesh/mesh_scale.hpp"
 #include "parts/merged_parts.hpp"
 #include "parts/part_cutter.hpp"
 #include "scene/scene_mesh.hpp"
@@ -76,9 +77,7 @@ void finish_piece(MeshData& mesh, const EnvironmentScene& scene, Ranks& ranks) {
   refuse(scene.skip_bad_cells, "cells to leave out");
   refuse(std::holds_alternative<PatchAngle>(scene.patches), "patches by their angle");
   refuse(std::holds_alternative<PatchArray>(scene.patches), "patches by an array");
-  if (scene.scale != 1.0) {
-    for (Vec3& x : mesh.points) x *= scene.scale;
-  }
+  if (scene.scale != 1.0) scale_mesh(mesh, scene.scale);
   select_free(mesh, scene, ranks);
   select_walls(mesh, scene.walls);
   if (const auto* names = std::get_if<std::vector<std::string>>(&scene.patches)) keep_patches(mesh, *names);

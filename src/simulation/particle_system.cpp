@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/are_several.hpp"
+#include "complex/periodic_faces.hpp"
 #include "complex/simplex.hpp"
 #include "dartcast/cell_tally.hpp"
 #include "dartcast/error.hpp"
@@ -105,13 +106,10 @@ class ImagesUse {
   bool counts_;
 };
 
-void check_periodic(const SimulationOptions& o) {
-  const auto refuse = [](const char* what) {
-    throw InvalidArgument(
-        fmt::format("simulation: {} cannot be in a scene with periodic pairs: leave either out", what));
-  };
-  if (o.collisions) refuse("spheres that collide");
-  if (o.wall_motion == WallMotion::simultaneous) refuse("points that move at the same time as the walls");
+void check_periodic(const SimulationOptions& o, const CellComplex& complex) {
+  if (o.collisions) detail::refuse_periodic(complex, "simulation: spheres that collide");
+  if (o.wall_motion == WallMotion::simultaneous)
+    detail::refuse_periodic(complex, "simulation: points that move at the same time as the walls");
 }
 
 void check(const SimulationOptions& o, bool planar) {
@@ -172,7 +170,7 @@ ParticleSystem::ParticleSystem(Environment& environment, Followers& followers, M
       images_(environment.complex(), options_.user_data),
       contacts_(environment, followers, motion, options_, responses_) {
   check(options, environment.map().dimension() == 2);
-  if (images_.pairs() != nullptr) check_periodic(options);
+  check_periodic(options, environment.complex());
   if (environment.map().dimension() == 2 && options.gravity.z != 0.0)
     throw InvalidArgument(fmt::format("simulation: gravity is ({}, {}, {}): in the plane its z must be 0",
                                       options.gravity.x, options.gravity.y, options.gravity.z));

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -11,7 +12,9 @@
 #include "dartcast/error.hpp"
 #include "dartcast/mesh_check.hpp"
 #include "dartcast/mesh_selection.hpp"
+#include "mesh/mesh_scale.hpp"
 #include "mesh/patch_walls.hpp"
+#include "mesh/periodic_pairs.hpp"
 #include "parts/part_of_rank.hpp"
 
 namespace dartcast {
@@ -68,6 +71,7 @@ void select_cells_and_patches(MeshData& mesh, const EnvironmentScene& scene) {
   select_walls(mesh, scene.walls);
   if (const auto* names = std::get_if<std::vector<std::string>>(&scene.patches)) select_patches(mesh, *names);
   if (const auto* angle = std::get_if<PatchAngle>(&scene.patches)) divide_walls(mesh, angle->degrees);
+  for (const PeriodicPair& pair : scene.periodic) end_pairs(mesh, std::array{pair.a, pair.b});
   mesh.periodic.insert(mesh.periodic.end(), scene.periodic.begin(), scene.periodic.end());
 }
 
@@ -88,9 +92,7 @@ MeshData scene_mesh(const EnvironmentScene& scene) {
   if (scene.skip_bad_cells || std::holds_alternative<PatchArray>(scene.patches))
     throw InvalidArgument("the scene's mesh is not ready for use; call load_scene_files() first");
   MeshData mesh = generated_mesh(scene.mesh);
-  if (scene.scale != 1.0) {
-    for (Vec3& x : mesh.points) x *= scene.scale;
-  }
+  if (scene.scale != 1.0) scale_mesh(mesh, scene.scale);
   const MeshReport report = check_and_repair(mesh);
   if (!report.valid()) throw InvalidMesh("the scene's mesh: " + report.defects.front().message);
   select_cells_and_patches(mesh, scene);

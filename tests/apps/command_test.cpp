@@ -15,8 +15,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "dartcast/generators.hpp"
 #include "dartcast/mesh_files.hpp"
 #include "support/expectations.hpp"
+#include "support/foam_case.hpp"
 #include "support/shared_data.hpp"
 
 namespace dartcast::command_test {
@@ -295,6 +297,23 @@ TEST_F(Command, InfoListsPeriodicPairs) {
   const auto json = nlohmann::json::parse(run("info periodic.toml --json").out)["periodic"];
   EXPECT_EQ(json[0]["faces"], 4);
   EXPECT_EQ(json[1]["angle"], 90.0);
+}
+
+// A case's cyclic patches are a pair unless the scene makes walls of them, or names another pair.
+TEST_F(Command, PairsOfTheMeshsFile) {
+  const MeshData box = generate_box({.cells = {2, 2, 1}, .size = Vec3{1.0, 1.0, 1.0}});
+  FoamWriter(folder / "case", {}).write(foam_mesh(box, {{"xmin", "cyclic xmax"}, {"xmax", "cyclic xmin"}}));
+  const std::string line = "periodic: xmin leads to xmax, 2 faces, moved by (2, 0, 0)\n";
+  EXPECT_NE(run("check case").out.find("periodic: xmin leads to xmax, moved by (1, 0, 0)\n"), std::string::npos);
+  const std::string mesh = "[environment]\nmesh = 'case'\nscale = 2.0\n";
+  (void)write("pair.toml", mesh);
+  EXPECT_NE(run("info pair.toml").out.find(line), std::string::npos);
+  (void)write("pair.toml", mesh + "patches = ['ymin']\n");
+  EXPECT_NE(run("info pair.toml").out.find(line), std::string::npos);
+  (void)write("pair.toml", mesh + "walls = ['xmax']\n");
+  EXPECT_EQ(run("info pair.toml").out.find("periodic"), std::string::npos);
+  (void)write("pair.toml", mesh + "[[periodic]]\na = 'xmax'\nb = 'xmin'\ntranslate = [-2.0, 0.0, 0.0]\n");
+  EXPECT_NE(run("info pair.toml").out.find("periodic: xmax leads to xmin, 2 faces"), std::string::npos);
 }
 
 TEST_F(Command, InfoListsArraysWithTheirRanges) {

@@ -44,7 +44,8 @@ struct FoamMesh {
   struct Patch {
     std::string name, type;
     std::size_t size = 0;
-    std::string refers{};  ///< of a processorCyclic
+    std::string refers{};     ///< of a processorCyclic
+    std::string neighbour{};  ///< of a cyclic one
   };
   using Zones = std::vector<std::pair<std::string, std::vector<std::int64_t>>>;
 
@@ -55,6 +56,7 @@ struct FoamMesh {
   Zones cell_zones, face_zones;
 };
 
+/// `types`: by the patches' names; of a cyclic one with its partner behind a blank, if it has one.
 /// The faces of a mesh, those inside first, then patch by patch. Boundary faces without a patch are in the patch
 /// "walls"; patch faces inside are a zone of faces.
 inline FoamMesh foam_mesh(const MeshData& mesh, const std::map<std::string, std::string>& types = {}) {
@@ -97,7 +99,9 @@ inline FoamMesh foam_mesh(const MeshData& mesh, const std::map<std::string, std:
   for (const auto& [tag, labels] : zones) out.face_zones.emplace_back(names[tag], labels);
   for (const auto& [tag, name] : names) {
     const auto type = types.find(name);
-    FoamMesh::Patch patch{name, type == types.end() ? "patch" : type->second};
+    const std::string words = type == types.end() ? "patch" : type->second;
+    FoamMesh::Patch patch{name, words.substr(0, words.find(' '))};
+    if (words != patch.type) patch.neighbour = words.substr(patch.type.size() + 1);
     for (const Face& f : faces) {
       if (f.neighbour >= 0 || f.tag != tag) continue;
       add(f);
@@ -215,8 +219,9 @@ class FoamWriter {
     std::size_t start = mesh.neighbour.size();
     for (const auto& p : mesh.patches) {
       text += "  " + p.name + "\n  {\n    type " + p.type + ";\n    inGroups 1(" + p.type + ");\n    " +
-              (p.refers.empty() ? "" : "referPatch " + p.refers + ";\n    ") + "nFaces " + std::to_string(p.size) +
-              ";\n    startFace " + std::to_string(start) + ";\n  }\n";
+              (p.refers.empty() ? "" : "referPatch " + p.refers + ";\n    ") +
+              (p.neighbour.empty() ? "" : "neighbourPatch " + p.neighbour + ";\n    ") + "nFaces " +
+              std::to_string(p.size) + ";\n    startFace " + std::to_string(start) + ";\n  }\n";
       start += p.size;
     }
     file("constant/polyMesh/boundary", "polyBoundaryMesh", text + ")\n");
@@ -285,7 +290,7 @@ class FoamPart {
   void add_patches() {
     std::size_t first = whole_.neighbour.size();
     for (const auto& patch : whole_.patches) {
-      mesh_.patches.push_back({patch.name, patch.type, 0});
+      mesh_.patches.push_back({patch.name, patch.type, 0, "", patch.neighbour});
       for (std::size_t f = first; f < first + patch.size; ++f) {
         if (part_of(whole_.owner[f]) != own_) continue;
         if (patch.type == "cyclic") {

@@ -48,9 +48,9 @@ ParsedMesh mesh_in_space(PolyMesh mesh) {
     take_faces(mesh, c, of_cells[c], faces);
     add_cell(faces, parsed.mesh);
   }
+  parsed.mesh.points = std::move(mesh.points);
   add_zones_and_patches(
       mesh, [&](std::uint32_t f) { return mesh.faces[f]; }, parsed);
-  parsed.mesh.points = std::move(mesh.points);
   return parsed;
 }
 

@@ -33,4 +33,8 @@ using CornersOfFace = std::function<std::span<const std::uint32_t>(std::uint32_t
 /// in several zones has the first one. A warning says so, and also names patches that particles could pass in OpenFOAM.
 void add_zones_and_patches(const PolyMesh& mesh, const CornersOfFace& corners, ParsedMesh& parsed);
 
+/// Adds the mesh's pairs of cyclic patches, and that of two wedges. A warning names the patches of these types that are in
+/// none. The mesh has its points.
+void add_cyclic_pairs(const PolyMesh& mesh, const CornersOfFace& corners, ParsedMesh& parsed);
+
 }  // namespace dartcast

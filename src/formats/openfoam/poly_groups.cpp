@@ -1,6 +1,5 @@
 // Regions and patches from OpenFOAM's zones and patches.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <string>
@@ -21,8 +20,6 @@ std::vector<std::size_t> patch_sizes(const PolyMesh& mesh) {
   }
   return sizes;
 }
-
-bool is_cyclic(const PolyPatch& patch) { return patch.type.starts_with("cyclic") || patch.type == "wedge"; }
 
 void add_regions(const PolyMesh& mesh, ParsedMesh& parsed) {
   MeshData& out = parsed.mesh;
@@ -61,24 +58,6 @@ std::vector<std::int32_t> face_tags(const PolyMesh& mesh, ParsedMesh& parsed) {
   return tags;
 }
 
-// A cyclic patch or a wedge leads to its other side, where we have a wall unless the scene makes them a pair.
-void warn_of_cyclic(const PolyMesh& mesh, ParsedMesh& parsed) {
-  std::vector<std::string> names;
-  Finding finding{"cyclic", 0, {}, ""};
-  const std::vector<std::size_t> sizes = patch_sizes(mesh);
-  for (std::size_t p = 0; p < sizes.size(); ++p) {
-    if (is_cyclic(mesh.patches[p]) && sizes[p] > 0) names.push_back(mesh.patches[p].name);
-  }
-  for (std::size_t f = 0; f < mesh.patch.size(); ++f) {
-    if (mesh.patch[f] != none && is_cyclic(mesh.patches[mesh.patch[f]])) finding.add(f);
-  }
-  finding.message = fmt::format(
-      "faces in cyclic patches and wedges ({}): they are walls, unless [[periodic]] of the scene makes two of them a "
-      "pair",
-      fmt::join(names, ", "));
-  add_finding(parsed.warnings, finding);
-}
-
 void refuse_types(const PolyMesh& mesh) {
   const std::vector<std::size_t> sizes = patch_sizes(mesh);
   for (std::size_t p = 0; p < sizes.size(); ++p) {
@@ -96,7 +75,7 @@ void refuse_types(const PolyMesh& mesh) {
 
 void add_zones_and_patches(const PolyMesh& mesh, const CornersOfFace& corners, ParsedMesh& parsed) {
   refuse_types(mesh);
-  warn_of_cyclic(mesh, parsed);
+  add_cyclic_pairs(mesh, corners, parsed);
   add_regions(mesh, parsed);
   const std::vector<std::int32_t> tags = face_tags(mesh, parsed);
   const auto add_faces = [&](bool of_boundary) {

@@ -43,6 +43,7 @@ PolyPatchRange read_patch(FoamFile& file) {
   while (!file.take('}')) {
     const std::string key(file.word("a key of a patch"));
     if (key == "type") range.patch.type = file.word("the type of a patch");
+    if (key == "neighbourPatch") range.patch.neighbour = file.word("the name of a patch");
     if (key == "referPatch") range.patch.refers = file.word("the name of a patch");
     if (key == "nFaces") size = file.integer("the number of faces", 0, no_label_limit);
     if (key == "startFace") first = file.integer("the first face", 0, no_label_limit);

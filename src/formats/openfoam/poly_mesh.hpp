@@ -17,8 +17,9 @@ inline constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
 struct PolyPatch {
   std::string name;
-  std::string type;      ///< as "wall", "patch", "empty", "cyclic", "processor"
-  std::string refers{};  ///< processorCyclic: the patch of the whole that its faces are of
+  std::string type;         ///< as "wall", "patch", "empty", "cyclic", "processor"
+  std::string neighbour{};  ///< cyclic: the patch that it leads to
+  std::string refers{};     ///< processorCyclic: the patch of the whole that its faces are of
 };
 
 /// A patch, and its faces, which are consecutive.
