@@ -43,6 +43,7 @@ struct ComplexEditReport {
   /// split along their fans; else their warp.
   /// Faces that became walls do not count.
   double boundary_shift = 0.0;
+  bool replaced = false;  ///< by Environment::replace(): all cells and vertices are others, and the lists are empty
 
   /// The current cell in place of a cell that an edit returned before commit(). Cost: logarithmic.
   [[nodiscard]] Cell now(Cell c) const {

@@ -231,6 +231,14 @@ class Environment {
   /// the points must follow (dartcast::update_after_edit()). Throws what `make` throws, and EditRefused as
   /// ComplexEdit::commit(); then nothing is changed. Cost: that of the cells touched.
   ComplexEditReport edit(const std::function<void(ComplexEdit&)>& make);
+  /// Replaces the mesh by another one of the same dimension. It counts as an edit: every set of particles must then
+  /// update_after_edit(). Each particle is located exactly among all cells of the new mesh, and keeps its position. One on a
+  /// wall stays on its side. One that is in no free cell is orphaned. Nothing else follows: arrays at points, fields and
+  /// tallies must be made anew, and a tally in use ends. Walls have no velocity across a replacement: particles meet
+  /// them in their next step. A set that has not taken part in the last move cannot follow. Throws as the constructor, and
+  /// InvalidArgument for a mesh of another dimension; then nothing is changed. Cost: that of the constructor, and of
+  /// locate() for each particle.
+  void replace(MeshData mesh);
   [[nodiscard]] std::uint64_t edit_count() const;
   /// The report of the last edit; empty if there was none.
   [[nodiscard]] const ComplexEditReport& last_edit() const;

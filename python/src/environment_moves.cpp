@@ -84,17 +84,29 @@ double move_until_inverted(EnvironmentHandle& h, const Typed<"Points">& given, d
   return way;
 }
 
+// `call`: what moves the memory of positions.
+Environment& editable(EnvironmentHandle& h, const char* call) {
+  h.expect_no_writing(call);
+  if (!h.written.expired())
+    throw InvalidArgument(std::string(call) +
+                          ": an array of a next_points() block still exists, and its memory may move: delete it first "
+                          "(del x), and all views of it");
+  return h.changeable("let its events edit it");
+}
+
 ComplexEditReport edit(EnvironmentHandle& h, const Typed<"Callable[[ComplexEdit], object]">& make) {
   const Use use(*h.usage, "the environment");
-  h.expect_no_writing("edit");
-  if (!h.written.expired())
-    throw InvalidArgument(
-        "edit: an array of a next_points() block still exists, and an edit may move its memory: delete it first (del "
-        "x), and all views of it");
-  Environment& e = h.changeable("let its events edit it");
+  Environment& e = editable(h, "edit");
   const auto callback = edit_callback(make);
   const py::gil_scoped_release release;
   return e.edit(callback);
+}
+
+void replace(EnvironmentHandle& h, const MeshData& mesh) {
+  const Use use(*h.usage, "the environment");
+  Environment& e = editable(h, "replace");
+  const py::gil_scoped_release release;
+  e.replace(mesh);
 }
 
 UpdateReport update_after_edit(const EnvironmentHandle& h, ParticlesHandle& p, OrphanPolicy orphaned) {
@@ -134,6 +146,7 @@ void bind(py::module_& m, EnvironmentClass& c) {
         "the number does not match, or in the plane a z is not 0.");
   c.def("move_until_inverted", &move_until_inverted, about("Environment::move_until_inverted"));
   c.def("edit", &edit, about("Environment::edit", "make(edit): gets a ComplexEdit, which is open until it returns."));
+  c.def("replace", &replace, about("Environment::replace"));
   c.def("update_after_edit", &update_after_edit, about("Environment::update_after_edit"));
 }
 

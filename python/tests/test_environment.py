@@ -361,6 +361,17 @@ def test_edits_change_the_cells_and_particles_follow():
     assert len(gone) == 2
 
 
+def test_a_mesh_is_replaced_and_particles_keep_their_places():
+    env = box()
+    parts = centred(env)
+    places = parts.positions.copy()
+    finer = dartcast.generate_box(cells=[6, 5, 4], size=env.positions.max(axis=0))
+    env.replace(finer)
+    assert env.edit_count == 1 and env.last_edit.replaced and len(env.positions) == 7 * 6 * 5
+    assert env.update_after_edit(parts).located == len(parts) and (parts.positions == places).all()
+    env.advance(parts, places)
+
+
 def test_an_edit_that_raises_changes_nothing():
     env = box()
     before = env.map.cells()

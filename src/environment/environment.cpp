@@ -90,9 +90,12 @@ bool can_be(const CellComplex& complex, const ParticleState& s, const Weights& w
 }  // namespace
 
 Environment::Members::Members(const MeshData& checked_mesh, Threads all)
-    : complex(checked_mesh, checked(all)), threads(all), id(next_id()) {
+    : complex(valid_complex(checked_mesh, checked(all))), threads(all), id(next_id()) {}
+
+CellComplex Environment::Members::valid_complex(const MeshData& checked_mesh, Threads threads) {
+  CellComplex complex(checked_mesh, threads);
   const auto& invalid = complex.invalid_cells();
-  if (invalid.empty()) return;
+  if (invalid.empty()) return complex;
   throw InvalidMesh(fmt::format("{} cells can't be divided into positive simplices; the first: {}; mend or remesh them",
                                 invalid.size(), invalid.front().message));
 }
@@ -318,10 +321,27 @@ double Environment::move_until_inverted(std::span<const Vec3> positions, double 
   return time;
 }
 
+void Environment::replace(MeshData mesh) {
+  Members& m = *members_;
+  if (mesh.dimension() != map().dimension())
+    throw InvalidArgument(fmt::format("replace: the new mesh has the dimension {}, and the environment {}",
+                                      mesh.dimension(), map().dimension()));
+  CellComplex complex = Members::valid_complex(checked_mesh(std::move(mesh)), m.threads);
+  m.replaced_positions.assign(m.complex.positions().begin(), m.complex.positions().end());
+  m.complex = std::move(complex);
+  m.last_edit = {};
+  m.last_edit.replaced = true;
+  ++m.edits;
+  m.moves_at_edit = m.moves;
+  m.locator.reset();
+  m.tallied = {};
+}
+
 ComplexEditReport Environment::edit(const std::function<void(ComplexEdit&)>& make) {
   ComplexEdit edit(members_->complex);
   make(edit);
   members_->last_edit = edit.commit();
+  members_->replaced_positions = {};
   ++members_->edits;
   members_->moves_at_edit = members_->moves;
   members_->locator.reset();

@@ -25,6 +25,8 @@ std::unique_ptr<Environment> environment_as_it_is(const MeshData& mesh);
 struct Environment::Members {
   Members(const MeshData& checked_mesh, Threads all);
 
+  /// Throws InvalidMesh if cells have no positive simplices.
+  static CellComplex valid_complex(const MeshData& checked_mesh, Threads threads);
   /// Makes an empty set one of this environment, as it is now.
   void adopt(Particles& particles) const;
   // These three throw InvalidArgument, with the name of the call. The first refuses sets of other environments, and
@@ -51,6 +53,7 @@ struct Environment::Members {
   std::uint64_t edits = 0;
   std::uint64_t moves_at_edit = 0;  ///< when the last edit was made
   ComplexEditReport last_edit;
+  std::vector<Vec3> replaced_positions;  ///< of the mesh that the last edit replaced
   ReplayHook replay_hook;
   detail::Tallied tallied;
   CrossingCallback crossed;

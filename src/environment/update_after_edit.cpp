@@ -10,6 +10,7 @@
 #include "dartcast/error.hpp"
 #include "environment/environment_members.hpp"
 #include "environment/particle_details.hpp"
+#include "mesh/box_tree.hpp"
 #include "tracking/carry.hpp"
 #include "tracking/nearest_free.hpp"
 #include "tracking/step.hpp"
@@ -33,9 +34,12 @@ Vec3 placed_inside(const std::array<Vec3, N>& v, const Vec3& x) {
 class EditFollower {
  public:
   // `complex`: the one that was edited, with the positions that the particles have gone along to.
-  EditFollower(const CellComplex& complex, const ComplexEditReport& edit, Particles& particles, OrphanPolicy orphaned)
+  // `replaced`: the positions of the mesh before, if that was replaced; they must outlive it.
+  EditFollower(const CellComplex& complex, const ComplexEditReport& edit, std::span<const Vec3> replaced,
+               Particles& particles, OrphanPolicy orphaned)
       : complex_(complex),
         edit_(edit),
+        positions_before_(edit.replaced ? replaced : complex.positions()),
         particles_(particles),
         states_(particles.states_),
         details_(particles.details()),
@@ -65,6 +69,7 @@ class EditFollower {
   }
 
   UpdateReport update_after_edit() {
+    if (edit_.replaced) return update_after_replacement();
     if (!details_.index || details_.index->is_outdated()) details_.index.emplace(states_);
     const std::vector<std::uint32_t> touched = particles_near(removed_, edit_.map.marked);
     for (const Cell c : removed_) details_.index->clear(c);  // another cell may take its number
@@ -75,6 +80,22 @@ class EditFollower {
   }
 
  private:
+  UpdateReport update_after_replacement() {
+    locator_.emplace(complex_);
+    details_.index.reset();
+    details_.cache.forget();
+    report_.touched = particles_.size();
+    for (std::uint32_t i = 0; i < particles_.size(); ++i) {
+      states_[i].touching_count = 0;
+      locate(i);
+      const bool orphaned = !report_.orphaned.empty() && report_.orphaned.back().particle == i;
+      const bool leaves = orphaned && report_.orphaned.back().outcome == OrphanPolicy::absorb;
+      if (!leaves) details_.cache.place(i, complex_, states_[i]);
+    }
+    remove_absorbed();
+    return std::move(report_);
+  }
+
   void step(const Stepper& stepper, std::size_t i) const {
     ParticleState& s = states_[i];
     Weights& weights = details_.weights[i];
@@ -158,11 +179,12 @@ class EditFollower {
   [[nodiscard]] SimplexId place_of(std::uint32_t i) const {
     const ParticleState& s = states_[i];
     std::array<Vec3, N> old;
-    for (std::size_t k = 0; k < N; ++k) old[k] = complex_.positions()[details_.cache.vertices(i)[k]];
+    for (std::size_t k = 0; k < N; ++k) old[k] = positions_before_[details_.cache.vertices(i)[k]];
     const Vec3 middle = flushed(detail::mean_of(old));
     if (!s.held && detail::in_closed_simplex(old, middle)) {
       const SimplexId at = locator_->find(complex_, s.position, middle);
-      if (at.valid()) return at;
+      const bool on_border = edit_.replaced && at.valid() && !map().is_free(at.cell);  // perhaps of a free cell, too
+      if (at.valid() && !on_border) return at;
     }
     return locator_->find(complex_, s.position);
   }
@@ -194,6 +216,43 @@ class EditFollower {
     p.outcome = OrphanPolicy::absorb;
   }
 
+  // Those whose boxes come as near as one that is found by doubling a distance, among them that of the nearest free cell.
+  std::vector<Cell> free_cells_near(const Vec3& x) {
+    if (!boxes_) list_free_cells();
+    std::vector<Cell> found;
+    const auto find = [&](double reach) {
+      found.clear();
+      const Vec3 r = {reach, reach, reach};
+      boxes_->query({x - r, x + r}, [&](std::uint32_t i) {
+        found.push_back(free_cells_[i]);
+        return true;
+      });
+    };
+    constexpr double farthest = 0x1p+200;  // beyond the exact range
+    double reach = 0x1p-200;
+    for (find(reach); found.empty() && reach < farthest; find(reach)) reach *= 2.0;
+    const auto nearest = nearest_free(complex_, found, x);
+    if (nearest) find(nearest->distance * (1.0 + 0x1p-20));
+    return found;
+  }
+
+  void list_free_cells() {
+    std::vector<Box> boxes;
+    for (const Cell c : map().cells()) {
+      const CellView v = map().view(c);
+      if (!v.is_free()) continue;
+      const Vec3& first = complex_.positions()[v.vertex(0).value];
+      Box box = {first, first};
+      for (std::uint16_t k = 1; k < v.shape().corner_count(); ++k) {
+        const Vec3& p = complex_.positions()[v.vertex(k).value];
+        box = join(box, {p, p});
+      }
+      boxes.push_back(box);
+      free_cells_.push_back(c);
+    }
+    boxes_.emplace(std::move(boxes));
+  }
+
   void hold(std::uint32_t i, SimplexId at) {
     ParticleState& s = states_[i];
     if (!s.held || s.at() != at) details_.weights[i] = detail::barycentric(complex_.corners(at), s.position);
@@ -201,9 +260,11 @@ class EditFollower {
     s.held = true;
   }
 
-  bool move_to_free(ParticleState& s, SimplexId at, double& distance) const {
+  bool move_to_free(ParticleState& s, SimplexId at, double& distance) {
     std::vector<Cell> start;
-    if (at.valid()) {
+    if (edit_.replaced) {
+      start = free_cells_near(s.position);
+    } else if (at.valid()) {
       start = {at.cell};
     } else {
       start = edit_.map.added;
@@ -246,12 +307,15 @@ class EditFollower {
 
   const CellComplex& complex_;
   const ComplexEditReport& edit_;
+  std::span<const Vec3> positions_before_;
   Particles& particles_;
   std::vector<ParticleState>& states_;
   Particles::Details& details_;
   OrphanPolicy orphaned_;
   std::vector<Cell> removed_;  // sorted
   std::optional<Locator> locator_;
+  std::optional<BoxTree> boxes_;  // of the free cells
+  std::vector<Cell> free_cells_;
   UpdateReport report_;
 };
 
@@ -261,12 +325,16 @@ UpdateReport Environment::update_after_edit(Particles& particles, OrphanPolicy o
   m.check_known(particles, "update_after_edit");
   Particles::Details& details = particles.details();
   if (details.edits == m.edits) return {};
+  if (m.last_edit.replaced && details.moves != m.moves_at_edit)
+    throw InvalidArgument(
+        "update_after_edit: the particles missed the move before the mesh was replaced: add() their positions to a new "
+        "set; advance() every set before replace()");
   UpdateReport report;
   if (details.moves == m.moves_at_edit && m.moves != m.moves_at_edit) {
     const CellComplex before = m.complex.before_move();
-    report = EditFollower(before, m.last_edit, particles, orphaned).update_after_edit();
+    report = EditFollower(before, m.last_edit, m.replaced_positions, particles, orphaned).update_after_edit();
   } else {
-    EditFollower follower(m.complex, m.last_edit, particles, orphaned);
+    EditFollower follower(m.complex, m.last_edit, m.replaced_positions, particles, orphaned);
     if (details.moves != m.moves) follower.carry_with_mesh(m.threads);
     details.moves = m.moves;
     report = follower.update_after_edit();

@@ -196,6 +196,7 @@ void VectorField::spread(const CellComplex& complex, std::vector<Vec3>& values) 
 }
 
 void VectorField::update_after_edit(const ComplexEditReport& edit, const CellComplex& complex) {
+  if (edit.replaced) throw InvalidArgument("vector field: the mesh was replaced: make a new field on its points");
   const auto take_over = [&](std::vector<Vec3>& values) {
     dartcast::update_after_edit(edit, complex.positions().size(), values);
     complex.steiner_weights().compute(values);

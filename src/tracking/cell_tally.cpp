@@ -149,6 +149,8 @@ void CellTally::share_out(const CellComplex& complex, const Sums& sums, std::spa
 
 // Places of removed cells may be those of added ones.
 void CellTally::update_after_edit(const CellComplex& complex, const ComplexEditReport& edit) {
+  if (edit.replaced)
+    throw InvalidArgument("cell tally: the mesh was replaced, and its cells are others: make a new tally");
   std::unordered_map<std::uint32_t, Sums> removed;  // by source
   for (const CellHandle& h : edit.map.removed) {
     if (h.cell.index() >= pools_[h.cell.pool()].sums.size()) continue;  // added and removed by the same edit

@@ -67,7 +67,7 @@ def of_tallies() -> Calls:
 
 
 def of_moves() -> Calls:
-    env = environment()
+    env, replaced = environment(), environment()
     rest = env.positions.copy()
     later, folded = rest + [0.1, 0.0, 0.0], rest.copy()
     folded[21] += [2.0, 0.0, 0.0]
@@ -90,6 +90,8 @@ def of_moves() -> Calls:
         "Environment.first_inversion": lambda: env.first_inversion(folded),
         "Environment.first_inversion: none": lambda: env.first_inversion(later),
         "Environment.first_inversion: refused": refused(lambda: env.first_inversion(rest[1:])),
+        "Environment.replace": lambda: replaced.replace(dc.generate_box(cells=[3, 3, 3])),
+        "Environment.replace: refused": refused(lambda: replaced.replace(dc.generate_rectangle(cells=[2, 2]))),
         "Environment.move_until_inverted": lambda: (env.move_until_inverted(folded, 0.5), env.move(rest)),
         "Environment.move_until_inverted: refused": refused(lambda: env.move_until_inverted(rest, np.nan)),
     }
