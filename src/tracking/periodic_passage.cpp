@@ -117,7 +117,9 @@ std::optional<SimplexFacet> way_round(const Space<Positions, N>& space, const Pe
       through.wall_facet = static_cast<std::uint8_t>(facet);
       const PeriodicEntry<N> entry = periodic_entry(space, pairs, *to, through, here.p, here.q);
       const auto is_known = [&](const Image& i) { return i.simplex.cell == entry.simplex.cell && i.p == entry.point; };
-      if (!in_closed_simplex(entry.corners, entry.point)) {
+      const bool on_face = in_closed_simplex(entry.corners, entry.point) &&
+                           orient_facet(entry.corners, entry.facet, entry.point) == Sign::zero;
+      if (!on_face) {
         const bool leaves = next == 0 && orient_facet(space.corners(cell, s), facet, q) == Sign::negative;
         if (leaves && !beyond) beyond = SimplexFacet{id, facet};
       } else if (std::none_of(images.begin(), images.end(), is_known)) {
@@ -152,9 +154,9 @@ const PeriodicPartner* periodic_end(const Space<Positions, N>& space, const Peri
                     });
     return nullptr;
   }
-  if (!w.at_start || partner != nullptr) return partner;
+  if (!w.at_start) return partner;
   const std::optional<SimplexFacet> way = way_round(space, pairs, w.wall_simplex, p, q);
-  if (!way) return nullptr;
+  if (!way) return partner;
   w.wall_simplex = way->simplex;
   w.wall_facet = static_cast<std::uint8_t>(way->facet);
   return partner_of(pairs, w.wall_simplex, space.map->view(w.wall_simplex.cell), w.wall_facet);

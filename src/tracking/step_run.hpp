@@ -325,10 +325,13 @@ class StepRun {
       s_.result.invalid_cell = entry.simplex.cell;
       return;
     }
-    // It entered: rounding must not lead it out again.
+    // It entered: rounding must not lead it out again. At an edge it may pass this face to come to another one: then its
+    // target may be far behind this one, and stays.
     WallPlanes<N> planes;
     planes.add(flushed_plane(entry.plane));
-    lift_off(planes, state_.position, entry.target, lift_doublings);
+    Vec3 lifted = entry.target;
+    lift_off(planes, state_.position, lifted, lift_doublings);
+    if (planes.none_behind(lifted)) entry.target = lifted;
     note(w, to, entry.fraction);
     s_.slice_target = flushed(entry.target);
     const Vec3 unused = s_.slice_target - state_.position + s_.interval.later;
@@ -343,8 +346,12 @@ class StepRun {
   bool place(const Space<Positions, N>& space, const PeriodicEntry<N>& entry) {
     const auto proved = proved_inside(entry.corners, entry.point);
     if (!proved && !positive(entry.corners)) return false;
-    const SimplexPlacement placed = proved ? SimplexPlacement{entry.simplex, *proved}
-                                           : next_to(space, entry.simplex, entry.corners, entry.on_plane());
+    // On an edge it stays there, so that the walk finds the cells around it that periodic_end() has found.
+    SimplexPlacement placed{entry.simplex, entry.point};
+    if (proved)
+      placed.position = *proved;
+    else if (!in_closed_simplex(entry.corners, entry.point))
+      placed = next_to(space, entry.simplex, entry.corners, entry.on_plane());
     state_.put(placed.simplex, placed.position);
     state_.touching_count = 0;
     return true;

@@ -90,7 +90,7 @@ struct StepState {
   /// Whether the step has put the particle there, and it has stayed there.
   [[nodiscard]] bool stays(const ParticleState& after) const {
     if (!knows_end()) return false;
-    const bool stopped_there = result.stopped && contact_count == 1;
+    const bool stopped_there = result.stopped && contact_count == 1 && crossing_count == 0;
     return stopped_there || (after.at() == walk.wall_simplex && after.position == impact->position);
   }
 };

@@ -444,6 +444,71 @@ TEST(Periodic, AllWaysToStepHaveTheSameBits) {
   }
 }
 
+// A particle that passes a face and stops at a wall behind it begins its next step as any other.
+TEST(Periodic, StepsAfterAStopBehindAFaceAreThoseOfTheParticleAlone) {
+  const std::array<std::uint32_t, 3> cubes = {3, 2, 2};
+  for (const bool moves : {false, true}) {
+    const MeshData box = periodic_box({.cells = cubes, .blocked_share = 0.3}, 3);
+    Environment environment(box);
+    Random random(8);
+    Particles particles;
+    environment.add(particles, lattice_points(random, cubes, 400));
+    for (unsigned step = 0; step < 6; ++step) {
+      std::vector<Vec3> targets;
+      for (std::size_t i = 0; i < particles.size(); ++i)  // every fourth way goes along walls
+        targets.push_back(particles[i].position +
+                          Vec3{lattice(random, -2, 3), lattice(random, -1, 2) * (i % 4 == 0 ? 0.0 : 1.0), 0.25});
+      if (moves) {
+        MeshData moved = box;
+        test::shake(moved, cubes, step);
+        environment.move(moved.points);
+      }
+      const Particles before = particles;
+      environment.advance(particles, targets);
+      for (std::size_t i = 0; i < particles.size(); ++i) {
+        const Trace alone = environment.trace(before, i, {&targets[i], 1}).front();
+        ASSERT_EQ(alone.after.position, particles[i].position) << "particle " << i << " step " << step;
+        ASSERT_EQ(alone.after.at(), particles[i].at());
+      }
+      test::expect_audited(environment.complex(), particles);
+    }
+  }
+}
+
+// A way that starts on an edge of the border may pass a face that it does not go beyond, to come to another one. Its target
+// stays where it is.
+TEST(Periodic, WaysFromCornersOfTheBorderEndWhereTheyShould) {
+  const std::array<std::uint32_t, 3> cubes = {3, 2, 2};
+  std::size_t crossings = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    MeshData box = periodic_box({.cells = cubes, .type = CellType::tetrahedron, .blocked_share = 0.3, .seed = seed},
+                                static_cast<unsigned>(1 + seed % 3));
+    test::shake(box, cubes, seed);
+    Environment environment(box);
+    Particles particles;
+    std::vector<Vec3> targets;
+    Random random(seed);
+    for (int i = 0; i < 10; ++i) environment.add(particles, box.points);
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+      const auto part = [&] { return 0x1p-5 * (random.below(3) - 1.0); };
+      targets.push_back(particles[i].position + Vec3{part(), part(), part()});
+    }
+    const StepReport report = environment.advance(particles, targets);
+    std::vector<bool> met(targets.size());
+    for (const Contact& c : report.contacts.contacts) met[c.particle] = true;
+    std::vector<Vec3> homes(targets.size());
+    for (const PeriodicCrossing& c : report.contacts.crossings) {
+      const Vec3 way = environment.complex().periodic()->pairs()[c.pair].translate;
+      homes[c.particle] += c.back ? way : -way;
+    }
+    crossings += report.contacts.crossings.size();
+    for (std::size_t i = 0; i < targets.size(); ++i)
+      EXPECT_EQ(met[i] ? targets[i] : particles[i].position + homes[i], targets[i]) << i << " seed " << seed;
+    test::expect_audited(environment.complex(), particles);
+  }
+  EXPECT_GT(crossings, 100U);
+}
+
 // Corners of one side are off their partners: no particle is lost, and each goes as far as it should.
 TEST(Periodic, RoundedPartnersLoseNoParticle) {
   const std::array<std::uint32_t, 3> cubes = {2, 2, 2};
