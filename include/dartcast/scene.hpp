@@ -305,6 +305,7 @@ struct MotionScene {
   ForceOptions forces{};
   double diffusion = 0.0;          ///< m^2 / s
   std::string diffusivity{};       ///< instead: one of the names of `sample`
+  bool brownian_bridge = false;    ///< as SimulationOptions::brownian_bridge
   TurbulenceOptions turbulence{};  ///< its names are among those of `sample`
   unsigned substeps = 1;
   Integrator integrator = Integrator::euler;

@@ -96,6 +96,7 @@ struct SimulationOptions {
   /// Instead: the name of a value that a scene samples at points (MotionScene::sample), at least 0. Each way gets the drift
   /// grad D dt, so that a uniform cloud stays uniform.
   std::string diffusivity = {};
+  bool brownian_bridge = false;  ///< walls that absorb, let stick or escape also count touches within diffusion's ways
   TurbulenceOptions turbulence = {};                         ///< it needs a field
   WallResponse response = {};                                ///< what happens at walls: Reflect{0.5}, Slide{}, ...
   std::map<std::string, WallResponse> patch_responses = {};  ///< at the walls of these patches, by name

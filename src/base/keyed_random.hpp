@@ -30,7 +30,8 @@ enum class RandomPurpose : std::uint32_t {
   diffusion = 16,
   brownian = 17,
   eddy = 18,
-  size = 19
+  size = 19,
+  bridge = 20
 };
 
 /// Random bits for items at a moment, which is a number below 2^53. Draws 0 to 7 of an item have others, and so has a

@@ -56,7 +56,10 @@ void read_turbulence(TomlTable t, MotionScene& scene) {
   const bool by_epsilon = t.get("epsilon", turbulence.epsilon);
   if (t.get("omega", turbulence.omega) == by_epsilon) t.fail("", "give the name of an array as epsilon or as omega");
   t.get("lagrangian", turbulence.lagrangian, Range::positive);
-  for (const std::string& name : {turbulence.k, by_epsilon ? turbulence.epsilon : turbulence.omega}) {
+  const bool damps = t.get("wall_distance", turbulence.wall_distance);
+  std::vector<std::string> names = {turbulence.k, by_epsilon ? turbulence.epsilon : turbulence.omega};
+  if (damps) names.push_back(turbulence.wall_distance);
+  for (const std::string& name : names) {
     if (name.empty()) t.fail("", "names of arrays must not be empty");
     if (std::count(scene.sample.begin(), scene.sample.end(), name) == 0) scene.sample.push_back(name);
   }

@@ -182,6 +182,8 @@ class SceneReader {
       t.get("diffusion", scene.diffusivity);
     else
       t.get("diffusion", scene.diffusion, Range::not_negative);
+    if (t.get("brownian_bridge", scene.brownian_bridge) && !t.has("diffusion"))
+      t.fail("brownian_bridge", "brownian_bridge belongs to diffusion: give that, or leave it out");
     t.get("substeps", scene.substeps, 1U, 1000U);
     t.get("wall_motion", scene.wall_motion,
           {{"carried", WallMotion::carried}, {"simultaneous", WallMotion::simultaneous}});

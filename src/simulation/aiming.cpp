@@ -12,6 +12,7 @@
 #include "complex/simplex.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/predicates.hpp"
+#include "simulation/brownian_bridge.hpp"
 #include "simulation/runge_kutta.hpp"
 #include "tracking/carry.hpp"
 
@@ -25,13 +26,14 @@ constexpr std::size_t tracer_grain = 256;
 }  // namespace
 
 Aiming::Aiming(const Environment& environment, Followers& followers, const MovingVertices& motion,
-               const SimulationOptions& options, const SampledFields& sampled)
+               const SimulationOptions& options, const WallResponses& responses, const SampledFields& sampled)
     : environment_(environment),
       motion_(motion),
       options_(options),
+      responses_(responses),
       sampled_(sampled),
       eddies_(options, environment.map().dimension() == 2),
-      forces_(environment, motion, options, eddies_) {
+      forces_(environment, motion, options, eddies_, sampled) {
   followers.add([this](const ComplexEditReport& edit, OrphanPolicy /*orphaned*/) {
     if (field_) field_->update_after_edit(edit, environment_.complex());
     if (force_) force_->update_after_edit(edit, environment_.complex());
@@ -43,11 +45,8 @@ void Aiming::load_step() {
     throw InvalidArgument(
         "simulation: the integrator rk4 follows a velocity field, but there is none: call set_field()");
   if (eddies_.act()) check_field("turbulence");
-  const VectorField* const diffusivity = sampled_.component(options_.diffusivity).field;
-  if (!options_.diffusivity.empty() && (diffusivity == nullptr || diffusivity->place() != FieldPlace::points))
-    throw InvalidArgument(fmt::format(
-        "simulation: the diffusivity \"{}\" must be a component of an array at points that the scene samples",
-        options_.diffusivity));
+  check_sampled("diffusivity", options_.diffusivity);
+  check_sampled("wall distance", options_.turbulence.wall_distance);
   if (forces_.acts()) forces_.check(fields());
   if (field_) field_->hold(motion_.time(), motion_.time() + options_.dt);
   if (force_) force_->hold(motion_.time(), motion_.time() + options_.dt);
@@ -57,6 +56,13 @@ void Aiming::check_field(std::string_view what) const {
   if (!field_)
     throw InvalidArgument(
         fmt::format("simulation: {} needs a velocity field, but there is none: call set_field()", what));
+}
+
+void Aiming::check_sampled(std::string_view what, const std::string& name) const {
+  const VectorField* const field = sampled_.component(name).field;
+  if (!name.empty() && (field == nullptr || field->place() != FieldPlace::points))
+    throw InvalidArgument(fmt::format(
+        "simulation: the {} \"{}\" must be a component of an array at points that the scene samples", what, name));
 }
 
 void Aiming::set_field_time(double time) {
@@ -132,65 +138,51 @@ void Aiming::aim(ParticleSet& set, double dt, bool moving) {
     options_.integrator == Integrator::rk4 ? aim_by_runge_kutta(segment) : aim_at_field(segment);
     if (eddies_.act()) add_eddies(segment, set);
   }
-  if (diffuses()) diffuse(segment, set.ids());
+  if (diffuses()) diffuse(segment, set);
 }
 
 // Particles that follow the field follow the eddy; drag takes them a share of the way to its velocity.
 void Aiming::add_eddies(const Segment& segment, ParticleSet& set) {
   const RandomMoment moment = eddies_.moment(moment_);
   const double share = options_.drag > 0.0 ? segment.lost : 1.0;
+  const SampledFields::Component distance = sampled_.component(options_.turbulence.wall_distance);
   parallel_for(targets_.size(), aim_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (segment.statuses[i] != ParticleStatus::alive || segment.particles[i].held) continue;
-      const Vec3 change = eddies_.velocity(set.user_data(i), moment, set.ids()[i], segment.dt, {}) * share;
+      Vec3 change = eddies_.velocity(set.user_data(i), moment, set.ids()[i], segment.dt, {}) * share;
+      if (distance.field != nullptr)
+        change = eddies_.damped(change, set.user_data(i), sampled_.at(distance, segment.particles[i], segment.moving));
       segment.velocities[i] += change;
       targets_[i] = flushed(targets_[i] + change * segment.dt);
     }
   });
 }
 
-// Linear in the particle's simplex. A sliver has no gradient.
-Aiming::Diffusivity Aiming::diffusivity_at(const SampledFields::Component& of, const ParticleState& state,
-                                           bool moving) const {
-  const CellComplex& complex = environment_.complex();
-  const Corners now = complex.corners(state.at());
-  const Weights at = detail::barycentric(moving ? complex.previous_corners(state.at()) : now, state.position);
-  const unsigned corners = complex.map().dimension() + 1;
-  std::array<double, 4> values{};
-  double value = 0.0;
-  for (unsigned k = 0; k < corners; ++k) {
-    Weights corner{};
-    corner[k] = 1.0;
-    const Vec3 v = of.field->at(complex, state.at(), corner, now);
-    values[k] = of.number == 0 ? v.x : of.number == 1 ? v.y : v.z;
-    value += at[k] * values[k];
-  }
-  // In the plane the corners have a fourth one above it, which must not tilt the gradient.
-  const std::array<Vec3, 3> edges = {now[1] - now[0], now[2] - now[0],
-                                     corners == 4 ? now[3] - now[0] : Vec3{0.0, 0.0, 1.0}};
-  const std::array<Vec3, 3> duals = detail::duals(edges);
-  const double volume = dot(edges[0], duals[0]);
-  Vec3 gradient;
-  for (unsigned k = 1; k < corners; ++k) gradient += duals[k - 1] * ((values[k] - values[0]) / volume);
-  return {std::max(value, 0.0), is_finite(gradient) ? gradient : Vec3{}};
-}
-
-void Aiming::diffuse(const Segment& segment, std::span<const std::uint64_t> ids) {
+void Aiming::diffuse(const Segment& segment, const ParticleSet& set) {
   const SampledFields::Component of = sampled_.component(options_.diffusivity);
   const double length = of.field == nullptr ? std::sqrt(2.0 * options_.diffusion * segment.dt) : 1.0;
   const RandomMoment moment = {options_.seed, RandomPurpose::diffusion, moment_};
+  const RandomMoment touching = {options_.seed, RandomPurpose::bridge, moment_};
   const bool planar = environment_.map().dimension() == 2;
   parallel_for(targets_.size(), aim_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
     std::array<Vec3, aim_grain> ways;
+    NearWalls walls;
     const std::size_t size = end - begin;
-    detail::draw_ways({moment, length, planar, ids.subspan(begin, size), std::span(ways).first(size)});
+    detail::draw_ways({moment, length, planar, set.ids().subspan(begin, size), std::span(ways).first(size)});
     for (std::size_t i = begin; i < end; ++i) {
-      if (segment.statuses[i] != ParticleStatus::alive || segment.particles[i].held) continue;
+      const ParticleState& state = segment.particles[i];
+      if (segment.statuses[i] != ParticleStatus::alive || state.held) continue;
+      double variance = 2.0 * options_.diffusion * segment.dt;
       if (of.field != nullptr) {
-        const Diffusivity d = diffusivity_at(of, segment.particles[i], segment.moving);
-        ways[i - begin] = ways[i - begin] * std::sqrt(2.0 * d.value * segment.dt) + d.gradient * segment.dt;
+        const SampledFields::Value d = sampled_.at(of, state, segment.moving);
+        variance = 2.0 * d.value * segment.dt;
+        ways[i - begin] = ways[i - begin] * std::sqrt(variance) + d.gradient * segment.dt;
       }
       targets_[i] = flushed(targets_[i] + ways[i - begin]);
+      if (!options_.brownian_bridge || variance == 0.0) continue;
+      const std::uint32_t chance = touching.bits(set.ids()[i])[0];
+      targets_[i] = flushed(bridged(environment_.complex(), responses_, walls,
+                                    {state, set.radii()[i], targets_[i], variance, chance, segment.moving}));
     }
   });
 }

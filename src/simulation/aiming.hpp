@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -23,7 +24,7 @@ class Aiming {
  public:
   /// All outlive it.
   Aiming(const Environment& environment, Followers& followers, const MovingVertices& motion,
-         const SimulationOptions& options, const SampledFields& sampled);
+         const SimulationOptions& options, const WallResponses& responses, const SampledFields& sampled);
 
   void set_field(VelocityField field) { field_ = std::move(field); }
   void set_force(VectorField force) { force_ = std::move(force); }
@@ -76,14 +77,9 @@ class Aiming {
   void aim_by_runge_kutta(const Segment& segment);
   void aim_by_forces(const Segment& segment, ParticleSet& set);
   void add_eddies(const Segment& segment, ParticleSet& set);
-  struct Diffusivity {
-    double value = 0.0;  // m^2 / s
-    Vec3 gradient;       // m / s
-  };
   [[nodiscard]] bool diffuses() const { return options_.diffusion > 0.0 || !options_.diffusivity.empty(); }
-  [[nodiscard]] Diffusivity diffusivity_at(const SampledFields::Component& of, const ParticleState& state,
-                                           bool moving) const;
-  void diffuse(const Segment& segment, std::span<const std::uint64_t> ids);
+  void check_sampled(std::string_view what, const std::string& name) const;
+  void diffuse(const Segment& segment, const ParticleSet& set);
   [[nodiscard]] ForceStep::Fields fields() const;
   void aim_one(const Segment& segment, std::size_t i);
   void aim_in_flight(const Segment& segment, std::size_t begin, std::size_t end);
@@ -97,6 +93,7 @@ class Aiming {
   const Environment& environment_;
   const MovingVertices& motion_;
   const SimulationOptions& options_;
+  const WallResponses& responses_;
   const SampledFields& sampled_;
   std::optional<VelocityField> field_;
   std::optional<VectorField> force_;  // accelerations, on top of gravity

@@ -19,6 +19,7 @@ namespace dartcast {
 namespace {
 
 constexpr double c_mu = 0.09;
+constexpr double damping = 0.02;  // per y+
 
 std::size_t column(const std::vector<std::string>& names, const std::string& name) {
   const auto found = std::find(names.begin(), names.end(), name);
@@ -39,6 +40,9 @@ Eddies::Eddies(const SimulationOptions& options, bool planar)
   if (!acts_ && t.epsilon.empty() && t.omega.empty()) return;
   if (!acts_ || t.epsilon.empty() == t.omega.empty())
     throw InvalidArgument("simulation: turbulence needs k, and one of epsilon and omega");
+  const Fluid& fluid = options.forces.fluid;
+  if (!t.wall_distance.empty() && !(fluid.density > 0.0 && fluid.viscosity > 0.0))
+    throw InvalidArgument("simulation: turbulence with a wall distance needs the fluid's density and viscosity");
   if (options.collisions)
     throw InvalidArgument("simulation: spheres that collide know of no eddies: leave collisions or turbulence out");
   energy_ = column(options.user_data, t.k);
@@ -101,6 +105,16 @@ Vec3 Eddies::velocity(std::span<double> numbers, const RandomMoment& moment, std
   }
   left -= duration;
   return {state[0], state[1], state[2]};
+}
+
+Vec3 Eddies::damped(const Vec3& velocity, std::span<const double> numbers, const SampledFields::Value& distance) const {
+  const Vec3& normal = distance.gradient;
+  const double square = dot(normal, normal);
+  if (!(square > 0.0)) return velocity;
+  const Fluid& fluid = options_.forces.fluid;
+  const double friction_speed = std::sqrt(std::sqrt(c_mu) * std::max(0.0, numbers[energy_]));
+  const double y = distance.value * friction_speed * fluid.density / fluid.viscosity;
+  return velocity - normal * (dot(velocity, normal) / square * exponential(-damping * y));
 }
 
 }  // namespace dartcast

@@ -8,6 +8,7 @@
 
 #include "base/keyed_random.hpp"
 #include "dartcast/simulation.hpp"
+#include "simulation/sampled_fields.hpp"
 
 namespace dartcast {
 
@@ -32,6 +33,10 @@ class Eddies {
   /// The velocity that a particle's eddy adds in the next `duration` seconds. Draws a new eddy if the last one has ended.
   Vec3 velocity(std::span<double> numbers, const RandomMoment& moment, std::uint64_t id, double duration,
                 const Crossing& crossing) const;
+
+  /// The same where a wall damps it: TurbulenceOptions::wall_distance.
+  [[nodiscard]] Vec3 damped(const Vec3& velocity, std::span<const double> numbers,
+                            const SampledFields::Value& distance) const;
 
  private:
   struct Eddy {

@@ -145,8 +145,13 @@ std::string wrong_material(const Material& material, const ForceOptions& forces)
 }
 
 ForceStep::ForceStep(const Environment& environment, const MovingVertices& motion, const SimulationOptions& options,
-                     const Eddies& eddies)
-    : environment_(environment), motion_(motion), options_(options), eddies_(eddies), terms_(terms_of(options)) {}
+                     const Eddies& eddies, const SampledFields& sampled)
+    : environment_(environment),
+      motion_(motion),
+      options_(options),
+      eddies_(eddies),
+      sampled_(sampled),
+      terms_(terms_of(options)) {}
 
 void ForceStep::check(const Fields& fields) const {
   const auto needs = [&](bool has_it, const char* what, const char* remedy) {
@@ -240,6 +245,7 @@ void ForceStep::sample_start(const Segment& segment, ParticleSet& set, std::size
 void ForceStep::draw_eddies(const Segment& segment, ParticleSet& set, std::size_t begin, std::size_t end) {
   const RandomMoment moment = eddies_.moment(segment.moment);
   const ParticleTable& t = std::as_const(set).table;
+  const SampledFields::Component distance = sampled_.component(options_.turbulence.wall_distance);
   for (std::size_t i = begin; i < end; ++i) {
     eddy_velocities_[i] = {};
     if (!takes_part(set.states[i], set.statuses()[i])) continue;
@@ -249,6 +255,9 @@ void ForceStep::draw_eddies(const Segment& segment, ParticleSet& set, std::size_
       crossing = {norm(fluid_.values[i] - set.velocities()[i]),
                   t[t.density][i] * d * d / (18.0 * terms_.fluid.viscosity)};
     eddy_velocities_[i] = eddies_.velocity(set.user_data(i), moment, set.ids()[i], segment.duration, crossing);
+    if (distance.field != nullptr)
+      eddy_velocities_[i] =
+          eddies_.damped(eddy_velocities_[i], set.user_data(i), sampled_.at(distance, set.states[i], segment.moving));
     fluid_.values[i] += eddy_velocities_[i];
   }
 }

@@ -14,6 +14,7 @@
 #include "simulation/force_kernel.hpp"
 #include "simulation/moving_vertices.hpp"
 #include "simulation/particle_set.hpp"
+#include "simulation/sampled_fields.hpp"
 
 namespace dartcast {
 
@@ -29,7 +30,7 @@ class ForceStep {
  public:
   /// All outlive it.
   ForceStep(const Environment& environment, const MovingVertices& motion, const SimulationOptions& options,
-            const Eddies& eddies);
+            const Eddies& eddies, const SampledFields& sampled);
 
   void set_law(ParticleLaw law) { law_ = std::move(law); }
   [[nodiscard]] bool acts() const { return law_ || !options_.forces.terms.empty(); }
@@ -94,6 +95,7 @@ class ForceStep {
   const MovingVertices& motion_;
   const SimulationOptions& options_;
   const Eddies& eddies_;
+  const SampledFields& sampled_;
   detail::ForceTerms terms_;
   ParticleLaw law_;
   Sampled fluid_;

@@ -124,6 +124,8 @@ void check(const SimulationOptions& o, bool planar) {
     throw InvalidArgument("simulation: diffusion and diffusivity are both given: give one of them");
   if ((o.diffusion > 0.0 || !o.diffusivity.empty()) && o.collisions)
     throw InvalidArgument("simulation: spheres that collide have no random ways: leave collisions or diffusion out");
+  if (o.brownian_bridge && o.diffusion == 0.0 && o.diffusivity.empty())
+    throw InvalidArgument("simulation: brownian_bridge belongs to diffusion: give that, or leave it out");
   if (o.substeps == 0) throw InvalidArgument("simulation: substeps must be at least 1");
   check_integrator(o);
   check_wall_motion(o);
@@ -165,7 +167,7 @@ ParticleSystem::ParticleSystem(Environment& environment, Followers& followers, M
       responses_(responses_of(options, environment.map())),
       set_(options.user_data.size()),
       parcels_(options_),
-      aiming_(environment, followers, motion, options_, sampled_),
+      aiming_(environment, followers, motion, options_, responses_, sampled_),
       sampled_(environment, followers, options_.user_data),
       images_(environment.complex(), options_.user_data),
       contacts_(environment, followers, motion, options_, responses_) {

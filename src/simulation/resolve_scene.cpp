@@ -30,6 +30,7 @@ SimulationOptions options_of(const Scene& scene, Ranks* ranks) {
   options.forces = scene.motion.forces;
   options.diffusion = scene.motion.diffusion;
   options.diffusivity = scene.motion.diffusivity;
+  options.brownian_bridge = scene.motion.brownian_bridge;
   options.turbulence = scene.motion.turbulence;
   options.response = scene.contact.general;
   options.patch_responses = scene.contact.by_patch;

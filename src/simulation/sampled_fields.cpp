@@ -8,6 +8,8 @@
 
 #include "base/parallel.hpp"
 #include "complex/simplex.hpp"
+#include "dartcast/predicates.hpp"
+#include "tracking/carry.hpp"
 
 namespace dartcast {
 
@@ -21,6 +23,31 @@ SampledFields::Component SampledFields::component(const std::string& name) const
     if (found != f.names.end()) return {&f.field, static_cast<std::size_t>(found - f.names.begin())};
   }
   return {};
+}
+
+// Linear in the particle's simplex. A sliver has no gradient.
+SampledFields::Value SampledFields::at(const Component& of, const ParticleState& state, bool moving) const {
+  const CellComplex& complex = environment_.complex();
+  const Corners now = complex.corners(state.at());
+  const Weights at = detail::barycentric(moving ? complex.previous_corners(state.at()) : now, state.position);
+  const unsigned corners = complex.map().dimension() + 1;
+  std::array<double, 4> values{};
+  double value = 0.0;
+  for (unsigned k = 0; k < corners; ++k) {
+    Weights corner{};
+    corner[k] = 1.0;
+    const Vec3 v = of.field->at(complex, state.at(), corner, now);
+    values[k] = of.number == 0 ? v.x : of.number == 1 ? v.y : v.z;
+    value += at[k] * values[k];
+  }
+  // In the plane the corners have a fourth one above it, which must not tilt the gradient.
+  const std::array<Vec3, 3> edges = {now[1] - now[0], now[2] - now[0],
+                                     corners == 4 ? now[3] - now[0] : Vec3{0.0, 0.0, 1.0}};
+  const std::array<Vec3, 3> duals = detail::duals(edges);
+  const double volume = dot(edges[0], duals[0]);
+  Vec3 gradient;
+  for (unsigned k = 1; k < corners; ++k) gradient += duals[k - 1] * ((values[k] - values[0]) / volume);
+  return {std::max(value, 0.0), is_finite(gradient) ? gradient : Vec3{}};
 }
 
 void SampledFields::take(ParticleSet& set, double time, double duration) {

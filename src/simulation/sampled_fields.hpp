@@ -45,6 +45,13 @@ class SampledFields {
   [[nodiscard]] bool integrate() const {
     return std::any_of(fields_.begin(), fields_.end(), [](const SampledField& f) { return !f.integrals.empty(); });
   }
+  /// A component at a place, and its gradient there.
+  struct Value {
+    double value = 0.0;
+    Vec3 gradient;  ///< of the particle's simplex; 0 in a sliver
+  };
+  /// Never below 0. `moving`: the state is from before the last move. Precondition: the field is at points.
+  [[nodiscard]] Value at(const Component& of, const ParticleState& state, bool moving) const;
   void set(std::vector<SampledField> fields) { fields_ = std::move(fields); }
   /// As VectorField::hold().
   void hold(double begin, double end) {

@@ -109,6 +109,7 @@ void check_can_be_spread(const Scene& scene) {
   refuse_if(scene.statistics.options.any(), "statistics");
   refuse_if(scene.motion.substeps > 1, "substeps");
   refuse_if(scene.motion.integrator != Integrator::euler, "the integrator rk4");
+  refuse_if(scene.motion.brownian_bridge, "a Brownian bridge");
   refuse_if(scene.motion.wall_motion != WallMotion::carried, "points that move at the same time as the walls");
   for (const FieldScene* field : {&scene.motion.field, &scene.motion.force})
     refuse_if(!field->files.empty() || static_cast<bool>(field->samples.read), "a field from files");

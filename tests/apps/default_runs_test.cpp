@@ -412,7 +412,11 @@ dt = 1e-3
 steps = 6
 field = "velocity"
 diffusion = 1e-9
-turbulence = { k = "path_length", omega = "path_length" }
+brownian_bridge = true
+turbulence = { k = "path_length", omega = "path_length", wall_distance = "path_length" }
+[fluid]
+density = 1000.0
+viscosity = 1e-3
 [contact]
 stick_below = 1e-3
 )"};
