@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "dartcast/cell_tally.hpp"
 #include "dartcast/contact.hpp"
 #include "dartcast/ids.hpp"
 #include "dartcast/mesh_data.hpp"
@@ -27,7 +28,6 @@ struct Tallied;
 }  // namespace detail
 
 class CellComplex;         // dartcast/cell_complex.hpp
-class CellTally;           // dartcast/cell_tally.hpp
 class CombinatorialMap;    // dartcast/combinatorial_map.hpp
 class ComplexEdit;         // dartcast/complex_edit.hpp
 struct ComplexEditReport;  // dartcast/complex_edit.hpp
@@ -306,12 +306,12 @@ class Environment {
   void set_crossing_callback(CrossingCallback crossed);
 
   /// Adds all later steps by advance() to a tally of complex(); null ends this. It must outlive its use, and follow each
-  /// edit: advance() throws InvalidArgument if it has no place for a cell. `numbers`: how often to add each particle's
-  /// step, below 2^32; empty: once. They are read in each advance(), which throws if there are more or fewer.
+  /// edit: advance() throws InvalidArgument if it has no place for a cell. `particles`: read in each advance(), which throws
+  /// if it has values for more or fewer, or such as TalliedParticles does not allow.
   /// advance_in_rounds() with a response refuses to step then. States and reports stay the same bits. If a response
   /// throws, the tally is as before. Cost: a second walk for each step that leaves its simplex; and if a response may
   /// throw, a copy of the tally.
-  void set_tally(CellTally* tally, std::span<const std::uint64_t> numbers = {});
+  void set_tally(CellTally* tally, const TalliedParticles& particles = {});
   [[nodiscard]] CellTally* tally() const;
 
   /// Checks every simplex of the scene; exact, parallel, streaming.

@@ -197,6 +197,9 @@ struct ParticlesScene {
   std::optional<SizeDistribution> sizes = {};
   /// How many particles each one stands for, if not 1: a number of user data with the name `number`, which a scene adds.
   std::uint64_t number = 1;
+  /// Its place among the groups of a scene, if statistics have classes by group: a number of user data with this name, which
+  /// the scene adds.
+  std::uint64_t group = 0;
 };
 
 /// Where a body has its particles: in a solid filled with spheres, on its surface, or in its volume.

@@ -143,12 +143,20 @@ struct ResidenceTimes {
 
 // The statistics that a simulation keeps.
 
-/// The names of quantities that are kept by cell (dartcast/cell_tally.hpp), of the run so far: "track_length" (m),
-/// "residence" (s), "visits", "deposition" (particles that were absorbed or have stuck at a wall of the cell), and
-/// "concentration": the mean number of particles in the cell over its volume as it is now (1/m^3; in the plane 1/m^2).
+/// The names of quantities that are kept by cell (dartcast/cell_tally.hpp): "track_length" (m), "residence" (s), "visits",
+/// "deposition" (particles that were absorbed or have stuck at a wall of the cell), "concentration" (the mean number of
+/// particles in the cell over its volume as it is now, 1/m^3; in the plane 1/m^2) and "mean_age" (s, of the particles there,
+/// at the middle of each segment of a step). Vectors are "momentum" (N s, that drag has taken from particles) and
+/// "momentum_source" (the same over volume and time, N/m^3). So are "energy" (J, the work of particles against drag)
+/// and "energy_source" (W/m^3). A particle's mass is that of its diameter and density, or with collisions of its sphere; else
+/// 0. Drag is that of the constant drag, of forces and of a law. Random kicks are not in it.
 std::vector<std::string> cell_quantities();
-/// Throws InvalidArgument if a name is none of these, or is there twice.
+/// Throws InvalidArgument if a name is none of these, nor "user:" and a name, or is there twice.
 void check_cell_quantities(std::span<const std::string> names);
+
+/// In StatisticsOptions::classes_of: the user data with this name, which a scene gives the place of the particle's group
+/// (ParticlesScene). There is a class for each group if there are no bounds.
+inline constexpr const char* group_number = "group";
 
 /// The statistics that a simulation keeps. A particle that stands for several (SimulationOptions::user_data) counts as so
 /// many.
@@ -159,7 +167,13 @@ struct StatisticsOptions {
   std::vector<SectionPlane> planes;           ///< crossings by particles and centres of spheres
   std::uint64_t pathlines_every = 0;          ///< pathlines of the particles whose id is a multiple of it; 0: of none
   std::vector<std::uint64_t> pathlines_of{};  ///< and of these ids
-  std::vector<std::string> cells{};           ///< quantities by cell: some of cell_quantities()
+  /// Quantities by cell: some of cell_quantities(), and "user:NAME": the integral over time of this number of user data.
+  std::vector<std::string> cells{};
+  std::uint64_t cells_every = 0;  ///< sums by cell begin anew after so many steps; 0: never
+  /// Sums by cell are also kept by class. A particle's class is the number of bounds that are at most its diameter, or its
+  /// user data of this name. Empty: there are no classes.
+  std::string classes_of{};
+  std::vector<double> class_bounds{};  ///< they increase; at most 255
 
   [[nodiscard]] bool pathlines() const { return pathlines_every > 0 || !pathlines_of.empty(); }
   [[nodiscard]] bool any() const { return hits || residence || !planes.empty() || pathlines() || !cells.empty(); }

@@ -64,7 +64,11 @@ py::dict cell_arrays(const Handle& self) {
     if (tally) arrays = self.get().cell_arrays(*tally);
   }
   py::dict found;
-  for (DataArray& a : arrays) found[py::str(a.name)] = array_of(std::move(a.values));
+  for (DataArray& a : arrays) {
+    const auto rows = static_cast<py::ssize_t>(a.values.size() / a.components);
+    py::array values = array_of(std::move(a.values));
+    found[py::str(a.name)] = a.components == 1 ? values : values.reshape({rows, py::ssize_t{3}});
+  }
   return found;
 }
 
@@ -125,8 +129,8 @@ void bind_solids(Class& c) {
       "The bodies; None where no body has been added. Set their velocities between steps; the simulation steps them.");
   c.def("cell_arrays", &cell_arrays,
         "The quantities of StatisticsOptions.cells by name: arrays with a value for each cell, in the order of "
-        "map.cells(). "
-        "Of all ranks: collective.");
+        "map.cells(); vectors are rows. With classes, those of class k have the ending _NAME_k. Of all ranks: "
+        "collective.");
   c.def("catheter", &catheter, py::arg("i"), "A catheter, which the simulation steps.");
   c.def("catheter_step", &catheter_step, py::arg("i"), doc("Simulation::catheter_step"));
   c.def_property_readonly("solids", &solids, "The solids, which the simulation moves; None where there are none.");

@@ -32,6 +32,48 @@ def test_a_tally_adds_up_to_the_paths():
         box(3).set_tally(tally)
 
 
+def test_classes_and_amounts_are_kept_apart():
+    env = box(3)
+    x = np.random.default_rng(4).uniform(0.1, 0.9, (60, 3))
+    particles = dartcast.Particles()
+    env.add(particles, x)
+    tally = dartcast.CellTally(env, classes=2, amounts=2)
+    assert (tally.classes, tally.amounts) == (2, 2)
+    of_class = np.arange(60) % 2
+    amounts = np.column_stack([np.ones(60), np.linspace(-1e-9, 2e-9, 60)])
+    env.set_tally(tally, classes=of_class, amounts=amounts.ravel())
+    env.advance(particles, np.clip(x + 0.3, 0.05, 0.95))
+    assert tally.adds_up() and np.isclose(tally.whole_amount(1), amounts[:, 1].sum(), rtol=1e-14)
+    for k in (0, 1):
+        assert np.allclose(tally.amount(0, k), tally.residence(k), rtol=1e-12)
+        assert np.isclose(tally.amount(1, k).sum(), amounts[of_class == k, 1].sum(), rtol=1e-12)
+    assert np.array_equal(tally.visits(), tally.visits(0) + tally.visits(1))
+    env.set_tally(tally, amounts=[1.0])
+    with pytest.raises(ValueError, match="1 amounts for 60 particles"):
+        env.advance(particles, particles.positions)
+    with pytest.raises(ValueError, match="no class 2"):
+        tally.visits(2)
+
+
+def test_drag_gives_its_momentum_to_cells():
+    env = box(3)
+    options = dartcast.SimulationOptions(dt=0.1, drag=2.0, user_data=["w"])
+    simulation = dartcast.Simulation(env, options)
+    simulation.set_statistics(dartcast.StatisticsOptions(
+        cells=["momentum", "energy", "user:w"], cells_every=3, classes_of="diameter", class_bounds=[2e-3]))
+    material = dartcast.Material(1e-3, 1000.0, 0.0)
+    simulation.add([[0.2, 0.5, 0.5], [0.3, 0.4, 0.6]], [0.5, 0.0, 0.0], user_data=[3.0], material=material)
+    for _ in range(3):
+        simulation.step()
+    arrays = simulation.cell_arrays()
+    mass = 2 * 1000.0 * np.pi / 6 * 1e-9
+    lost = 1 - np.exp(-0.6)
+    assert arrays["momentum"].shape == (27, 3)
+    assert np.allclose(arrays["momentum"].sum(axis=0), [mass * 0.5 * lost, 0, 0], rtol=1e-12, atol=0)
+    assert np.array_equal(arrays["momentum"], arrays["momentum_diameter_0"])
+    assert not arrays["energy_diameter_1"].any() and np.isclose(arrays["user:w"].sum(), 2 * 3.0 * 0.3)
+
+
 def test_a_tally_may_go_before_its_environment():
     env = box(3)
     particles = dartcast.Particles()
@@ -73,7 +115,7 @@ def test_a_simulation_has_arrays_of_cells():
     for _ in range(5):
         simulation.step()
     arrays = simulation.cell_arrays()
-    assert list(arrays) == dartcast.records.cell_quantities()
+    assert list(arrays) == dartcast.records.cell_quantities() and arrays["momentum"].shape == (27, 3)
     assert np.isclose(arrays["residence"].sum(), 100 * 0.5)
     assert np.isclose((arrays["concentration"] / 27).sum(), 100)
     with pytest.raises(ValueError, match="did you mean"):

@@ -52,6 +52,26 @@ Threads checked(Threads threads) {
   throw InvalidMesh(fmt::format("{}: {}, the first: {}", f.message, f.count, fmt::join(f.first, ", ")));
 }
 
+// Checks the values that its owner has set for the particles of the next step.
+void check_tallied(const detail::Tallied& tallied, std::size_t count, const char* caller) {
+  const auto& [numbers, classes, amounts] = tallied.particles;
+  const auto check_size = [&](std::size_t given, std::size_t width, const char* what) {
+    if (given != 0 && given != count * width)
+      throw InvalidArgument(fmt::format("{}: the tally has {} {} for {} particles, not {}: call set_tally() again",
+                                        caller, given, what, count, count * width));
+  };
+  check_size(numbers.size(), 1, "numbers");
+  check_size(classes.size(), 1, "classes");
+  check_size(amounts.size(), tallied.tally->amounts(), "amounts");
+  for (const std::uint32_t c : classes) {
+    if (c >= tallied.tally->classes())
+      throw InvalidArgument(fmt::format("{}: a particle is of the class {}, and the tally has {}: make it for as many",
+                                        caller, c, tallied.tally->classes()));
+  }
+  if (!std::all_of(amounts.begin(), amounts.end(), [](double a) { return std::isfinite(a); }))
+    throw InvalidArgument(fmt::format("{}: an amount for the tally is not finite: give finite ones", caller));
+}
+
 MeshData checked_mesh(MeshData mesh) {
   const MeshReport report = check_and_repair(mesh);
   if (!report.defects.empty()) refuse(report.defects.front());
@@ -358,10 +378,7 @@ void Environment::check_advance(const Particles& particles, const StepOptions& o
   if (tally() != nullptr && !tally()->fits(complex()))
     throw InvalidArgument(fmt::format(
         "{}: the tally has missed an edit of its environment: call its update_after_edit() after each edit", caller));
-  const std::size_t numbers = members_->tallied.numbers.size();
-  if (numbers > 0 && numbers != particles.size())
-    throw InvalidArgument(fmt::format("{}: the tally has numbers for {} particles, not {}: call set_tally() again",
-                                      caller, numbers, particles.size()));
+  if (tally() != nullptr) check_tallied(members_->tallied, particles.size(), caller);
 }
 
 StepReport Environment::advance(Particles& particles, std::span<const Vec3> targets, const ContactCallback& respond,
@@ -402,8 +419,8 @@ const ReplayHook& Environment::replay_hook() const { return members_->replay_hoo
 
 void Environment::set_crossing_callback(CrossingCallback crossed) { members_->crossed = std::move(crossed); }
 
-void Environment::set_tally(CellTally* tally, std::span<const std::uint64_t> numbers) {
-  members_->tallied = {tally, numbers, {}};
+void Environment::set_tally(CellTally* tally, const TalliedParticles& particles) {
+  members_->tallied = {tally, particles, {}};
 }
 CellTally* Environment::tally() const { return members_->tallied.tally; }
 detail::Tallied Environment::set_tallied(const detail::Tallied& tallied) {

@@ -108,9 +108,12 @@ XmlDataSet EnvironmentRecord::data_set(const Environment& environment) {
     std::vector<double> values = a.values;
     if (edits == 0) {
       const std::vector<Cell> cells = environment.map().cells();
-      for (std::size_t i = 0; i < cells.size(); ++i) values[row(environment.map().source(cells[i]))] = a.values[i];
+      for (std::size_t i = 0; i < a.values.size(); ++i) {
+        const std::size_t to = row(environment.map().source(cells[i / a.components]));
+        values[to * a.components + i % a.components] = a.values[i];
+      }
     }
-    data.section("CellData").arrays.emplace_back(a.name, std::move(values));
+    data.section("CellData").arrays.emplace_back(a.name, std::move(values), a.components);
   }
   return data;
 }

@@ -294,7 +294,9 @@ void RunOutput::write_cells(const Simulation& simulation) const {
   const std::vector<DataArray> arrays = simulation.cell_arrays(*cells_);
   const std::vector<Cell> cells = map.cells();
   std::string table = "cell,x,y,z";
-  for (const DataArray& a : arrays) table += "," + a.name;
+  for (const DataArray& a : arrays) {
+    for (std::size_t k = 0; k < a.components; ++k) table += "," + component_name(a.name, a.components, k);
+  }
   table += "\n";
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const std::span<const std::uint32_t> corners = map.view(cells[i]).vertices();
@@ -302,7 +304,9 @@ void RunOutput::write_cells(const Simulation& simulation) const {
     for (const std::uint32_t v : corners) centre += simulation.environment().complex().positions()[v];
     centre = centre * (1.0 / static_cast<double>(corners.size()));
     table += fmt::format("{},{},{},{}", map.source(cells[i]), centre.x, centre.y, centre.z);
-    for (const DataArray& a : arrays) table += fmt::format(",{}", a.values[i]);
+    for (const DataArray& a : arrays) {
+      for (std::size_t k = 0; k < a.components; ++k) table += fmt::format(",{}", a.values[i * a.components + k]);
+    }
     table += "\n";
   }
   const std::string_view whole = table;

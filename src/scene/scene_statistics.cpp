@@ -35,7 +35,8 @@ void read_pathlines(TomlTable t, StatisticsOptions& options) {
   t.finish();
 }
 
-void read_cells(TomlTable t, std::vector<std::string>& quantities) {
+void read_cells(TomlTable t, StatisticsOptions& options) {
+  std::vector<std::string>& quantities = options.cells;
   t.require("quantities", "some of the quantities that docs/scene.md lists");
   t.get("quantities", quantities);
   try {
@@ -43,6 +44,15 @@ void read_cells(TomlTable t, std::vector<std::string>& quantities) {
   } catch (const Error& e) {
     t.fail("quantities", e.what());
   }
+  t.get("every", options.cells_every, 1, max_id);
+  t.finish();
+}
+
+void read_classes(TomlTable t, StatisticsOptions& options) {
+  t.require("of", "\"group\", \"diameter\", or a name of user_data");
+  t.get("of", options.classes_of);
+  if (!t.get("bounds", options.class_bounds) && options.classes_of != group_number)
+    t.fail("", "give bounds = [...], the values between the classes");
   t.finish();
 }
 
@@ -58,7 +68,8 @@ StatisticsScene read_statistics(TomlTable t) {
   t.get("crossings", scene.crossings);
   if (scene.crossings && scene.options.planes.empty())
     t.fail("crossings", "crossings = true: there is no plane; add [[statistics.plane]]");
-  if (t.has("cells")) read_cells(t.table("cells"), scene.options.cells);
+  if (t.has("cells")) read_cells(t.table("cells"), scene.options);
+  if (t.has("classes")) read_classes(t.table("classes"), scene.options);
   if (t.has("pathlines")) read_pathlines(t.table("pathlines"), scene.options);
   t.finish();
   return scene;

@@ -132,11 +132,15 @@ Aiming::Segment Aiming::segment_of(ParticleSet& set, double dt, bool moving) {
 
 void Aiming::aim(ParticleSet& set, double dt, bool moving) {
   const Segment segment = segment_of(set, dt, moving);
+  losses_.assign(counts_losses_ ? targets_.size() : 0, DragLoss());
   if (forces_.acts()) {
     aim_by_forces(segment, set);
   } else {
+    std::vector<Vec3> before;
+    if (counts_losses_ && options_.drag > 0.0) before.assign(segment.velocities.begin(), segment.velocities.end());
     options_.integrator == Integrator::rk4 ? aim_by_runge_kutta(segment) : aim_at_field(segment);
     if (eddies_.act()) add_eddies(segment, set);
+    if (!before.empty()) note_losses(segment, before);
   }
   if (diffuses()) diffuse(segment, set);
 }
@@ -154,6 +158,27 @@ void Aiming::add_eddies(const Segment& segment, ParticleSet& set) {
         change = eddies_.damped(change, set.user_data(i), sampled_.at(distance, segment.particles[i], segment.moving));
       segment.velocities[i] += change;
       targets_[i] = flushed(targets_[i] + change * segment.dt);
+    }
+  });
+}
+
+// The loss to the constant drag is the change that the acceleration does not explain. The way is that of the step, by
+// the velocity at its end.
+void Aiming::note_losses(const Segment& segment, std::span<const Vec3> before) {
+  const CellComplex& complex = environment_.complex();
+  parallel_for(losses_.size(), aim_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const ParticleState& s = segment.particles[i];
+      if (segment.statuses[i] != ParticleStatus::alive || s.held) continue;
+      Vec3 a = options_.gravity;
+      if (force_) {
+        const Corners now = complex.corners(s.at());
+        a += force_->at(complex, s.at(),
+                        detail::barycentric(segment.moving ? complex.previous_corners(s.at()) : now, s.position), now);
+      }
+      const Vec3& v = segment.velocities[i];
+      const double gain = 0.5 * (dot(v, v) - dot(before[i], before[i]));
+      losses_[i] = {a * segment.dt - (v - before[i]), dot(a, v) * segment.dt - gain};
     }
   });
 }
@@ -277,7 +302,7 @@ void Aiming::aim_by_forces(const Segment& segment, ParticleSet& set) {
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     if (segment.particles[i].held || segment.statuses[i] != ParticleStatus::alive) aim_one(segment, i);
   }
-  forces_.aim({fields(), begin_, segment.dt, segment.moving, moment_}, set, targets_);
+  forces_.aim({fields(), begin_, segment.dt, segment.moving, moment_, losses_}, set, targets_);
 }
 
 void Aiming::aim_stuck(ParticleSet& set, double dt) {

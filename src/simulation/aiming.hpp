@@ -55,6 +55,10 @@ class Aiming {
   void aim_stuck(ParticleSet& set, double dt);
   /// By particle.
   [[nodiscard]] std::span<Vec3> targets() { return targets_; }
+  /// From now on aim() also finds what particles lose to drag, or not.
+  void count_losses(bool counted) { counts_losses_ = counted; }
+  /// By particle; empty if they are not counted.
+  [[nodiscard]] std::span<const DragLoss> losses() const { return losses_; }
   /// The acceleration that contacts know of: none if a field or a force changes velocities, too. Drag reduces it.
   [[nodiscard]] Acceleration acceleration(double dt) const;
 
@@ -77,6 +81,7 @@ class Aiming {
   void aim_by_runge_kutta(const Segment& segment);
   void aim_by_forces(const Segment& segment, ParticleSet& set);
   void add_eddies(const Segment& segment, ParticleSet& set);
+  void note_losses(const Segment& segment, std::span<const Vec3> before);
   [[nodiscard]] bool diffuses() const { return options_.diffusion > 0.0 || !options_.diffusivity.empty(); }
   void check_sampled(std::string_view what, const std::string& name) const;
   void diffuse(const Segment& segment, const ParticleSet& set);
@@ -102,6 +107,8 @@ class Aiming {
   double begin_ = 0.0;  // of the segment, s
   std::uint64_t moment_ = 0;
   std::vector<Vec3> targets_;
+  bool counts_losses_ = false;
+  std::vector<DragLoss> losses_;
 };
 
 }  // namespace dartcast

@@ -277,6 +277,7 @@ void ForceStep::predict_middle(const Segment& segment, const ParticleSet& set, s
 void ForceStep::finish(const Segment& segment, ParticleSet& set, std::span<Vec3> targets, std::size_t begin,
                        std::size_t end) {
   move(set, segment.duration, begin, end);
+  if (!segment.losses.empty()) note_losses(segment, set, begin, end);
   if (terms_.brownian) add_thermal_motion(segment, set, begin, end);
   const VectorField* field = segment.fields.velocity;
   const bool relative = field != nullptr && field->frame() == FieldFrame::mesh && motion_.deforms() && !segment.moving;
@@ -288,6 +289,21 @@ void ForceStep::finish(const Segment& segment, ParticleSet& set, std::span<Vec3>
     velocities[i] = velocities_[i];
     const Vec3 way = relative ? ways_[i] - fluid_.mesh[i] * segment.duration : ways_[i];
     targets[i] = flushed(state.position + way);
+  }
+}
+
+// The loss of the motion that is held: its velocity has the mean way / time. Rates are less by the mass of fluid that moves along. A
+// rotation does no work.
+void ForceStep::note_losses(const Segment& segment, const ParticleSet& set, std::size_t begin, std::size_t end) const {
+  const std::span<const double> densities = set.table[set.table.density];
+  for (std::size_t i = begin; i < end; ++i) {
+    if (!takes_part(set.states[i], set.statuses()[i])) continue;
+    const double mass = terms_.virtual_mass ? 1.0 + 0.5 * terms_.fluid.density / densities[i] : 1.0;
+    const Vec3& v = velocities_[i];
+    const Vec3& before = set.velocities()[i];
+    const Vec3 slip = ways_[i] - fluid_.values[i] * segment.duration;
+    const double gain = 0.5 * (dot(v, v) - dot(before, before));
+    segment.losses[i] = {slip * (mass * rates_[i]), mass * (dot(accelerations_[i], ways_[i]) - gain)};
   }
 }
 

@@ -23,6 +23,12 @@ void check_forces(const SimulationOptions& options, bool planar);
 /// Empty, or what is wrong with a particle's material for these forces, behind "a particle's".
 [[nodiscard]] std::string wrong_material(const Material& material, const ForceOptions& forces);
 
+/// The loss of a particle to drag in a segment, for each kg of its mass.
+struct DragLoss {
+  Vec3 momentum;        ///< m/s
+  double energy = 0.0;  ///< J/kg: the work against drag
+};
+
 /// Its scheme is the exponential midpoint rule. Coefficients and field at the start predict the middle of the segment;
 /// those at the middle are then held over the whole. The field at the middle is that of the particle's simplex,
 /// continued with its gradient. It changes by no more than it does within the simplex.
@@ -50,8 +56,9 @@ class ForceStep {
     Fields fields;
     double begin;
     double duration;
-    bool moving;           ///< particles have positions from before the last move
-    std::uint64_t moment;  ///< number of the segment in the run, for random numbers
+    bool moving;                 ///< particles have positions from before the last move
+    std::uint64_t moment;        ///< number of the segment in the run, for random numbers
+    std::span<DragLoss> losses;  ///< of each particle that moves, to be filled in; empty: not asked for
   };
   /// Gives velocities and targets to all particles that are alive and not held. Throws what the law throws, and
   /// InvalidArgument if the law's values cannot be used. Velocities are then unchanged.
@@ -74,6 +81,7 @@ class ForceStep {
   void sample_start(const Segment& segment, ParticleSet& set, std::size_t begin, std::size_t end);
   void predict_middle(const Segment& segment, const ParticleSet& set, std::size_t begin, std::size_t end);
   void finish(const Segment& segment, ParticleSet& set, std::span<Vec3> targets, std::size_t begin, std::size_t end);
+  void note_losses(const Segment& segment, const ParticleSet& set, std::size_t begin, std::size_t end) const;
   void draw_eddies(const Segment& segment, ParticleSet& set, std::size_t begin, std::size_t end);
   void sample(const Segment& segment, const VectorField& field, const ParticleSet& set, std::size_t moment,
               std::span<const Vec3> ways, Sampled& to, std::size_t begin, std::size_t end) const;

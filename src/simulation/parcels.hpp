@@ -22,8 +22,6 @@ class Parcels {
 
   /// Whether any may stand for several.
   [[nodiscard]] bool exist() const { return column_.has_value(); }
-  /// The index of their number in user data. Precondition: they exist.
-  [[nodiscard]] std::size_t column() const { return *column_; }
   /// At least 1.
   [[nodiscard]] std::uint64_t number(const ParticleSet& set, std::size_t i) const;
   /// One for each particle; empty if no parcels exist.

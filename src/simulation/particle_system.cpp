@@ -74,9 +74,9 @@ void check_wall_motion(const SimulationOptions& o) {
 // While it lives, steps in the environment are added to a tally; null: as before.
 class TallyUse {
  public:
-  TallyUse(Environment& environment, CellTally* tally, std::vector<std::uint64_t> numbers)
-      : environment_(environment), former_(environment.tally()), numbers_(std::move(numbers)) {
-    if (tally != nullptr) environment.set_tally(tally, numbers_);
+  TallyUse(Environment& environment, CellTally* tally, const TallyValues& values)
+      : environment_(environment), former_(environment.tally()) {
+    if (tally != nullptr) environment.set_tally(tally, values.spans());
   }
   TallyUse(const TallyUse&) = delete;
   TallyUse& operator=(const TallyUse&) = delete;
@@ -85,7 +85,6 @@ class TallyUse {
  private:
   Environment& environment_;
   CellTally* former_;
-  std::vector<std::uint64_t> numbers_;
 };
 
 // While it lives, the particles' images are counted.
@@ -226,7 +225,10 @@ void ParticleSystem::advance_segment(unsigned segment, std::vector<std::uint8_t>
   }
   const ScopeTimer timer(totals_.seconds_detect);
   const ContactCallback respond = response(dt);
-  const TallyUse use(environment_, tally_, tally_ != nullptr ? parcels_.numbers(set_) : std::vector<std::uint64_t>());
+  TallyValues tallied;
+  if (tally_ != nullptr)
+    tallied = plan_->values(set_, parcels_, aiming_.losses(), motion_.time() + (segment + 0.5) * dt);
+  const TallyUse use(environment_, tally_, tallied);
   const ImagesUse images(environment_, images_, set_);
   if (set_.spheres == 0) {
     StepReport report =
@@ -235,6 +237,7 @@ void ParticleSystem::advance_segment(unsigned segment, std::vector<std::uint8_t>
             ? simultaneous_stepper_.advance(environment_, set_.states, aiming_.targets(), respond, options_.step)
             : environment_.advance(set_.states, aiming_.targets(), respond, options_.step);
     hold_stopped(report, responses_, set_.velocities(), set_.statuses(), options_.dt, aiming_.acceleration(dt));
+    take_back_amounts(report, tallied.amounts);
     append_segment(last_.report, std::move(report), segment, options_.substeps);
     return;
   }
@@ -242,11 +245,27 @@ void ParticleSystem::advance_segment(unsigned segment, std::vector<std::uint8_t>
   SphereReport report =
       stepper_.advance(environment_, set_.states, set_.radii(), aiming_.targets(), respond, options_.step, clearances);
   hold_stopped(report.step, responses_, set_.velocities(), set_.statuses(), options_.dt, aiming_.acceleration(dt));
+  take_back_amounts(report.step, tallied.amounts);
   contacts_.add_to(report.step);
   append_segment(last_.report, std::move(report.step), segment, options_.substeps);
   for (const SphereOverlap& o : report.overlaps) totals_.deepest_in_wall = std::max(totals_.deepest_in_wall, o.depth);
   totals_.wall_overlaps += report.overlaps.size();
   last_.overlaps.insert(last_.overlaps.end(), report.overlaps.begin(), report.overlaps.end());
+}
+
+// A particle that leaves in a segment has its amounts up to there.
+void ParticleSystem::take_back_amounts(const StepReport& report, std::span<const double> amounts) {
+  if (amounts.empty()) return;
+  const std::size_t width = plan_->amounts();
+  std::vector<double> rest(width);
+  const std::vector<Contact>& contacts = report.contacts.contacts;
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const std::uint32_t i = contacts[k].particle;
+    const bool is_last = k + 1 == contacts.size() || contacts[k + 1].particle != i;
+    if (!is_last || !leaves(set_.statuses()[i])) continue;
+    for (std::size_t a = 0; a < width; ++a) rest[a] = amounts[i * width + a] * (1.0 - contacts[k].time_of_impact);
+    tally_->take_back_amounts(set_.states[i].cell, rest, plan_->class_of(set_, i));
+  }
 }
 
 // Valid until there are more or fewer particles.
@@ -283,7 +302,7 @@ void ParticleSystem::count_contacts() {
     const ParticleStatus end = set_.statuses()[c.particle];
     if (!is_last || end == ParticleStatus::alive) continue;  // a stuck particle has no contacts after this
     if (tally_ != nullptr && end != ParticleStatus::escaped)
-      tally_->deposit(wall.face.cell, parcels_.number(set_, c.particle));
+      tally_->deposit(wall.face.cell, parcels_.number(set_, c.particle), plan_->class_of(set_, c.particle));
     ++(end == ParticleStatus::escaped ? totals_.escaped_by_patch : totals_.deposited_by_patch)[wall.patch.value];
   }
 }
@@ -308,8 +327,10 @@ void ParticleSystem::remove_gone(std::span<const std::uint8_t> departed) {
     while (next < contacts.size() && contacts[next].particle <= i) ++next;
     last_.left.push_back({ids[i], statuses[i], set_.states[i].position, next - 1});
     if (tally_ != nullptr)
-      tally_->take_back(set_.states[i].cell, (1.0 - contacts[next - 1].time_of_impact) * options_.substeps *
-                                                 static_cast<double>(parcels_.number(set_, i)));
+      tally_->take_back(
+          set_.states[i].cell,
+          (1.0 - contacts[next - 1].time_of_impact) * options_.substeps * static_cast<double>(parcels_.number(set_, i)),
+          plan_->class_of(set_, i));
     ++(statuses[i] == ParticleStatus::absorbed ? absorbed : last_.escaped);
     gone_.add(ids[i], whole_state(i), set_.velocities()[i], static_cast<std::uint64_t>(statuses[i]));
   }

@@ -22,6 +22,7 @@
 #include "simulation/seeding.hpp"
 #include "simulation/simulation_state.hpp"
 #include "simulation/sphere_contacts.hpp"
+#include "simulation/tally_plan.hpp"
 
 namespace dartcast {
 
@@ -40,8 +41,12 @@ class ParticleSystem final : public SimulationComponent {
   [[nodiscard]] const PeriodicImages& images() const { return images_; }
   /// Gives all particles the values of the sampled arrays at their places now, and adds their integrals over a duration.
   void take_samples(double duration = 0.0) { sampled_.take(set_, motion_.time(), duration); }
-  /// Steps are added to it; null: to none.
-  void set_tally(CellTally* tally) { tally_ = tally; }
+  /// Steps are added to it by this plan; null: to none.
+  void set_tally(CellTally* tally, const TallyPlan* plan) {
+    tally_ = tally;
+    plan_ = plan;
+    aiming_.count_losses(plan != nullptr && plan->needs_losses());
+  }
   [[nodiscard]] const Parcels& parcels() const { return parcels_; }
   /// Whether steps list the parcels of contacts.
   void list_parcels(bool listed) { lists_parcels_ = listed; }
@@ -101,6 +106,7 @@ class ParticleSystem final : public SimulationComponent {
   void advance_segment(unsigned segment, std::vector<std::uint8_t>& departed);
   [[nodiscard]] ContactCallback answer(const Acceleration& acceleration);
   [[nodiscard]] ContactCallback response(double dt);
+  void take_back_amounts(const StepReport& report, std::span<const double> amounts);
   void count_contacts();
   void mark_held();
   void remove_gone(std::span<const std::uint8_t> departed);
@@ -121,6 +127,7 @@ class ParticleSystem final : public SimulationComponent {
   MovingVertices& motion_;
   SimulationOptions options_;
   CellTally* tally_ = nullptr;
+  const TallyPlan* plan_ = nullptr;  // of the tally
   bool lists_parcels_ = false;
   PartEnvironment* part_ = nullptr;  // none: the environment is whole
   WallResponses responses_;

@@ -165,6 +165,18 @@ bool is_ready(const EnvironmentScene& scene) {
          std::holds_alternative<std::monostate>(scene.patches);
 }
 
+// For statistics by group: user data that say of which one a particle is.
+void number_groups(const Scene& scene, ResolvedScene& resolved) {
+  std::vector<double>& bounds = resolved.statistics.class_bounds;
+  const bool all = bounds.empty();
+  if (std::find(scene.user_data.begin(), scene.user_data.end(), group_number) == scene.user_data.end())
+    resolved.options.user_data.emplace_back(group_number);
+  for (std::size_t i = 1; i < resolved.particles.size(); ++i) {
+    resolved.particles[i].group = i;
+    if (all) bounds.push_back(static_cast<double>(i));
+  }
+}
+
 void resolve_on(const MeshData& mesh, const Scene& scene, Threads threads, ResolvedScene& resolved) {
   resolved.environment = std::make_unique<Environment>(mesh, threads);
   const CellComplex& complex = resolved.environment->complex();
@@ -181,6 +193,7 @@ void resolve_on(const MeshData& mesh, const Scene& scene, Threads threads, Resol
   if (std::find(names.begin(), names.end(), parcel_number) == names.end() &&
       std::any_of(scene.particles.begin(), scene.particles.end(), [](const auto& group) { return group.number != 1; }))
     resolved.options.user_data.emplace_back(parcel_number);
+  if (scene.statistics.options.classes_of == group_number) number_groups(scene, resolved);
   resolved.events = events_of(scene, mesh, complex.map());
 }
 

@@ -39,7 +39,7 @@ struct ResolvedScene {
   RemeshScene remesh;
   AdaptiveSubdivisionScene adaptive_subdivision;
   StatisticsOptions statistics;
-  std::span<const ParticlesScene> particles;
+  std::vector<ParticlesScene> particles;
   std::span<const BodyScene> bodies;
   std::span<const CatheterScene> catheters;
   std::span<const SolidScene> solids;

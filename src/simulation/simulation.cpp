@@ -87,7 +87,7 @@ void Simulation::set_statistics(const StatisticsOptions& options) {
         "simulation: quantities by cell are not kept if ranks share the cells: let them share the "
         "particles");
   parts_->statistics.set_options(options);
-  parts_->particles.set_tally(parts_->statistics.tally());
+  parts_->particles.set_tally(parts_->statistics.tally(), parts_->statistics.plan());
   parts_->particles.list_parcels(parts_->statistics.lists_parcels());
 }
 const StatisticsOptions& Simulation::statistics_options() const { return parts_->statistics.options(); }

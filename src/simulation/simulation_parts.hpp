@@ -1,12 +1,17 @@
 // The parts of a simulation.
 #pragma once
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "dartcast/error.hpp"
 #include "dartcast/simulation.hpp"
+#include "dartcast/statistics.hpp"
 #include "environment/part_environment.hpp"
 #include "simulation/bodies_component.hpp"
 #include "simulation/catheters_component.hpp"
@@ -58,13 +63,19 @@ struct Simulation::Parts {
     if (group.interception) group.radius = 0.5 * group.material.diameter;
     std::vector<double>& data = group.user_data;
     const std::size_t given = data.size();
-    if (given > 0 || group.number != 1) data.resize(particles.options().user_data.size());
-    if (group.number == 1) return group;
-    const Parcels& parcels = particles.parcels();
-    if (!parcels.exist() || parcels.column() < given)
-      throw InvalidArgument(
-          "simulation: the number of a group is a number of user data: name it there, and give its value once");
-    data[parcels.column()] = static_cast<double>(group.number);
+    const std::vector<std::string>& names = particles.options().user_data;
+    const auto set = [&](const char* name, std::uint64_t value, std::uint64_t usual) {
+      if (value == usual) return;
+      const auto column = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+      if (column == names.size() || column < given)
+        throw InvalidArgument(fmt::format(
+            "simulation: the {} of a group is a number of user data: name it there, and give its value once", name));
+      data.resize(names.size());
+      data[column] = static_cast<double>(value);
+    };
+    if (given > 0) data.resize(names.size());
+    set(parcel_number, group.number, 1);
+    set(group_number, group.group, 0);
     return group;
   }
 

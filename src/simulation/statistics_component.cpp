@@ -34,6 +34,11 @@ void StatisticsComponent::set_options(const StatisticsOptions& options) {
   dartcast::check(options.planes);
   check_cell_quantities(options.cells);
   if (options.impacts && !options.hits) throw InvalidArgument("statistics: impacts are sums of hits: set hits, too");
+  std::optional<TallyPlan> plan;
+  if (options.cells.empty() &&
+      (options.cells_every > 0 || !options.classes_of.empty() || !options.class_bounds.empty()))
+    throw InvalidArgument("statistics: classes and a number of steps are for sums by cell: name quantities in cells");
+  if (!options.cells.empty()) plan.emplace(options, particles_.options(), starts_);
   options_ = options;
   std::sort(options_.pathlines_of.begin(), options_.pathlines_of.end());
   statistics_ = {};
@@ -41,10 +46,16 @@ void StatisticsComponent::set_options(const StatisticsOptions& options) {
   if (options.residence) statistics_.left.resize(particles_.environment().map().patch_names().size());
   starts_ = {};
   tally_.reset();
-  if (!options.cells.empty()) tally_.emplace(particles_.environment().complex());
+  plan_.reset();
+  if (!plan) return;
+  plan_.emplace(*plan);
+  tally_.emplace(particles_.environment().complex(), plan_->classes(), plan_->amounts());
 }
 
 void StatisticsComponent::note_start() {
+  const std::uint64_t every = options_.cells_every;
+  if (tally_ && every > 0 && particles_.motion().steps() % every == 0)
+    tally_->reset(particles_.environment().complex());
   if (!observes_motion()) return;
   const ScopeTimer timer(statistics_.seconds);
   const std::span<const std::uint64_t> ids = particles_.set().ids();

@@ -10,6 +10,7 @@
 #include "simulation/component.hpp"
 #include "simulation/particle_system.hpp"
 #include "simulation/start_times.hpp"
+#include "simulation/tally_plan.hpp"
 
 namespace dartcast {
 
@@ -38,6 +39,8 @@ class StatisticsComponent final : public SimulationComponent {
   }
   /// None if no quantity is kept by cell.
   [[nodiscard]] CellTally* tally() { return tally_ ? &*tally_ : nullptr; }
+  /// The plan of the tally; none likewise.
+  [[nodiscard]] const TallyPlan* plan() const { return plan_ ? &*plan_ : nullptr; }
   [[nodiscard]] double& seconds() { return statistics_.seconds; }
   /// Throws InvalidArgument if the state is of a simulation with other statistics.
   void check(const SimulationState& state) const;
@@ -59,7 +62,7 @@ class StatisticsComponent final : public SimulationComponent {
 
  private:
   [[nodiscard]] bool observes_motion() const {
-    return options_.residence || !options_.planes.empty() || options_.pathlines();
+    return options_.residence || !options_.planes.empty() || options_.pathlines() || (plan_ && plan_->needs_ages());
   }
   [[nodiscard]] std::uint64_t number_of(std::size_t i) const { return numbers_.empty() ? 1 : numbers_[i]; }
   void keep_on_first(std::vector<std::uint64_t> words);
@@ -73,6 +76,7 @@ class StatisticsComponent final : public SimulationComponent {
   const ParticleSystem& particles_;
   StatisticsOptions options_;
   Statistics statistics_;
+  std::optional<TallyPlan> plan_;
   std::optional<CellTally> tally_;
   StartTimes starts_;
   std::vector<Leaving> leavings_;  // of the last step, by id

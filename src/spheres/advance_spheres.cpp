@@ -105,7 +105,7 @@ class SphereTally {
     moved_ = environment.awaits_advance(particles);
     if (respond) former_ = *tally_;
     tallied_ = environment.set_tallied({});
-    environment.set_tallied({tally_, tallied_.numbers, radii});
+    environment.set_tallied({tally_, tallied_.particles, radii});
   }
   SphereTally(const SphereTally&) = delete;
   SphereTally& operator=(const SphereTally&) = delete;
@@ -123,7 +123,7 @@ class SphereTally {
     CentreContacts contacts(list);
     for (std::uint32_t i = 0; i < after.size(); ++i) {
       if (radii_[i] == 0.0) continue;
-      if (!tallied_.numbers.empty()) writer.set_number(tallied_.numbers[i]);
+      writer.set_particle(tallied_.particles, i);
       const Contact* const met = contacts.of(i).contact;
       stepper.tally_straight(before_[i], before_.held_weights(i), after[i], met != nullptr ? met->time_of_impact : 1.0,
                              writer);

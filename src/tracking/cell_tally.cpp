@@ -12,17 +12,30 @@
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/complex_edit.hpp"
 #include "dartcast/error.hpp"
+#include "tracking/tally_amount.hpp"
 #include "tracking/tally_writer.hpp"
 
 namespace dartcast {
 
+double detail::TallyAmount::value() const {
+  const bool negative = part[3] >> 63U != 0;
+  const TallyAmount size = negative ? -*this : *this;
+  double sum = 0.0;
+  for (std::size_t i = size.part.size(); i-- > 0;) sum = sum * 0x1p+64 + static_cast<double>(size.part[i]);
+  sum = std::ldexp(sum, -tally_amount_digits);
+  return negative ? -sum : sum;
+}
+
 namespace {
 
 __extension__ using Wide = unsigned __int128;
+using detail::TallyAmount;
 using detail::TallySum;
 
 constexpr std::size_t digits_of_sum = 4;  // of 32 bits, each in a word: carries of many sums have room
-constexpr std::size_t words_of_cell = 2 * digits_of_sum + 2;
+constexpr std::size_t words_of_sums = 2 * digits_of_sum + 2;
+constexpr std::size_t digits_of_amount = 8;
+constexpr std::uint32_t most_classes = 256;  // and as many amounts
 
 Wide wide(const TallySum& s) { return (Wide{s.high} << 64U) | s.low; }
 TallySum sum_of(Wide w) { return {static_cast<std::uint64_t>(w), static_cast<std::uint64_t>(w >> 64U)}; }
@@ -63,6 +76,13 @@ void put(const TallySum& sum, std::vector<std::uint64_t>& words) {
   }
 }
 
+void put(const TallyAmount& amount, std::vector<std::uint64_t>& words) {
+  for (const std::uint64_t part : amount.part) {
+    words.push_back(part & 0xffffffffU);
+    words.push_back(part >> 32U);
+  }
+}
+
 TallySum taken(std::span<const std::uint64_t>& words) {
   Wide sum = 0;
   for (unsigned i = 0; i < digits_of_sum; ++i) sum += Wide{words[i]} << (32U * i);
@@ -70,27 +90,54 @@ TallySum taken(std::span<const std::uint64_t>& words) {
   return sum_of(sum);
 }
 
+TallyAmount taken_amount(std::span<const std::uint64_t>& words) {
+  TallyAmount amount;
+  Wide carry = 0;
+  for (std::size_t i = 0; i < digits_of_amount; ++i) {
+    carry += words[i];
+    amount.part[i / 2] |= (static_cast<std::uint64_t>(carry) & 0xffffffffU) << 32U * (i % 2);
+    carry >>= 32U;
+  }
+  words = words.subspan(digits_of_amount);
+  return amount;
+}
+
+// The part that the first cells of a list get.
+TallyAmount part_of(const TallyAmount& whole, double share) {
+  return share < 1.0 ? detail::tally_amount(whole.value() * share) : whole;
+}
+
 }  // namespace
 
-CellTally::CellTally(const CellComplex& complex) : unit_(unit_for(complex.positions())) { reset(complex); }
+CellTally::CellTally(const CellComplex& complex, std::uint32_t classes, std::uint32_t amounts)
+    : unit_(unit_for(complex.positions())), classes_(classes), amounts_(std::min(amounts, most_classes)) {
+  if (classes == 0 || classes > most_classes || amounts > most_classes)
+    throw InvalidArgument(
+        fmt::format("CellTally: {} classes and {} amounts: give 1 to {} classes, and at most {} amounts", classes,
+                    amounts, most_classes, most_classes));
+  reset(complex);
+}
 
 void CellTally::reset(const CellComplex& complex) {
   pools_ = {};
   length_ = time_ = {};
+  std::fill(amounts_.begin(), amounts_.end(), TallyAmount());
   fit(complex);
   for (const Cell c : complex.map().cells()) pools_[c.pool()].source[c.index()] = complex.map().source(c);
 }
 
 void CellTally::fit(const CellComplex& complex) {
   for (std::uint32_t pool = 0; pool < pools_.size(); ++pool) {
-    pools_[pool].sums.resize(complex.map().slot_count(pool));
-    pools_[pool].source.resize(complex.map().slot_count(pool));
+    const std::size_t places = complex.map().slot_count(pool);
+    pools_[pool].sums.resize(places * classes_);
+    pools_[pool].amounts.resize(places * classes_ * amounts_.size());
+    pools_[pool].source.resize(places);
   }
 }
 
 bool CellTally::fits(const CellComplex& complex) const {
   for (std::uint32_t pool = 0; pool < pools_.size(); ++pool) {
-    if (pools_[pool].sums.size() != complex.map().slot_count(pool)) return false;
+    if (pools_[pool].source.size() != complex.map().slot_count(pool)) return false;
   }
   return true;
 }
@@ -103,60 +150,120 @@ CellTally::Sums& CellTally::Sums::operator+=(const Sums& other) {
   return *this;
 }
 
-bool CellTally::adds_up() const {
-  TallySum length;
-  TallySum time;
-  for (const Pool& pool : pools_) {
-    for (const Sums& s : pool.sums) {
-      add(length, s.length);
-      add(time, s.time);
-    }
-  }
-  return length == length_ && time == time_;
+CellTally::Record& CellTally::Record::operator+=(const Record& other) {
+  sums.resize(other.sums.size());
+  amounts.resize(other.amounts.size());
+  for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += other.sums[k];
+  for (std::size_t k = 0; k < amounts.size(); ++k) add_to(amounts[k], other.amounts[k]);
+  return *this;
 }
 
-void CellTally::take_back(Cell c, double time) {
+CellTally::Sums CellTally::sum_of(Cell c, std::uint32_t of_class) const {
+  const Sums* const first = pools_[c.pool()].sums.data() + c.index() * classes_;
+  if (of_class != all_classes) return first[of_class];
+  Sums all;
+  for (std::size_t k = 0; k < classes_; ++k) all += first[k];
+  return all;
+}
+
+double CellTally::track_length(Cell c, std::uint32_t of_class) const {
+  return sum_of(c, of_class).length.value() * unit_;
+}
+double CellTally::residence(Cell c, std::uint32_t of_class) const { return sum_of(c, of_class).time.value(); }
+std::uint64_t CellTally::visits(Cell c, std::uint32_t of_class) const { return sum_of(c, of_class).visits; }
+std::uint64_t CellTally::deposited(Cell c, std::uint32_t of_class) const { return sum_of(c, of_class).deposited; }
+double CellTally::amount(Cell c, std::uint32_t which, std::uint32_t of_class) const {
+  const bool all = of_class == all_classes;
+  TallyAmount sum;
+  for (std::size_t k = all ? 0 : of_class; k < (all ? classes_ : of_class + std::size_t{1}); ++k)
+    add_to(sum, pools_[c.pool()].amounts[(c.index() * classes_ + k) * amounts_.size() + which]);
+  return sum.value();
+}
+
+bool CellTally::adds_up() const {
+  Sums all;
+  std::vector<TallyAmount> amounts(amounts_.size());
+  for (const Pool& pool : pools_) {
+    for (const Sums& s : pool.sums) all += s;
+    for (std::size_t i = 0; i < pool.amounts.size(); ++i) add_to(amounts[i % amounts.size()], pool.amounts[i]);
+  }
+  return all.length == length_ && all.time == time_ && amounts == amounts_;
+}
+
+void CellTally::take_back(Cell c, double time, std::uint32_t of_class) {
   if (!(time > 0.0)) return;
-  Sums& sums = of(c);
+  Sums& sums = of(c, of_class);
   time = std::min(time, 0x1p+62);
   const double whole = std::floor(time);
   const Wide asked = wide({detail::tally_units(time - whole) << 2U, static_cast<std::uint64_t>(whole)});
   const Wide rest = std::min(asked, wide(sums.time));
-  sums.time = sum_of(wide(sums.time) - rest);
-  time_ = sum_of(wide(time_) - rest);
+  sums.time = dartcast::sum_of(wide(sums.time) - rest);
+  time_ = dartcast::sum_of(wide(time_) - rest);
 }
 
-void CellTally::share_out(const CellComplex& complex, const Sums& sums, std::span<const Cell> cells) {
+void CellTally::take_back_amounts(Cell c, std::span<const double> amounts, std::uint32_t of_class) {
+  for (std::size_t k = 0; k < amounts.size(); ++k) {
+    const TallyAmount back = -detail::tally_amount(amounts[k]);
+    add_to(amounts_of(c, of_class)[k], back);
+    add_to(amounts_[k], back);
+  }
+}
+
+void CellTally::share_out(const CellComplex& complex, const Record& record, std::span<const Cell> cells) {
   double whole = 0.0;
   for (const Cell c : cells) whole += volume6(complex, c);
   double so_far = 0.0;
-  Sums given;
+  Record given{std::vector<Sums>(record.sums.size()), std::vector<TallyAmount>(record.amounts.size())};
   for (std::size_t i = 0; i < cells.size(); ++i) {
     so_far += volume6(complex, cells[i]);
     const bool is_last = i + 1 == cells.size();
     const double share = is_last || !(whole > 0.0) ? 1.0 : std::min(so_far / whole, 1.0);
-    const Sums upto{sum_of(part_of(wide(sums.length), share)), sum_of(part_of(wide(sums.time), share)),
-                    static_cast<std::uint64_t>(part_of(sums.visits, share)),
-                    static_cast<std::uint64_t>(part_of(sums.deposited, share))};
-    Sums& to = of(cells[i]);
-    add(to.length, sum_of(wide(upto.length) - wide(given.length)));
-    add(to.time, sum_of(wide(upto.time) - wide(given.time)));
-    to.visits += upto.visits - given.visits;
-    to.deposited += upto.deposited - given.deposited;
-    given = upto;
+    for (std::size_t k = 0; k < record.sums.size(); ++k) {
+      const Sums& sums = record.sums[k];
+      const Sums& before = given.sums[k];
+      const Sums upto{dartcast::sum_of(part_of(wide(sums.length), share)),
+                      dartcast::sum_of(part_of(wide(sums.time), share)),
+                      static_cast<std::uint64_t>(part_of(sums.visits, share)),
+                      static_cast<std::uint64_t>(part_of(sums.deposited, share))};
+      of(cells[i], static_cast<std::uint32_t>(k)) +=
+          Sums{dartcast::sum_of(wide(upto.length) - wide(before.length)),
+               dartcast::sum_of(wide(upto.time) - wide(before.time)), upto.visits - before.visits,
+               upto.deposited - before.deposited};
+      given.sums[k] = upto;
+    }
+    for (std::size_t k = 0; k < record.amounts.size(); ++k) {
+      const TallyAmount upto = part_of(record.amounts[k], share);
+      add_to(amounts_of(cells[i], 0)[k], upto - given.amounts[k]);
+      given.amounts[k] = upto;
+    }
   }
+}
+
+// All of a cell, which then has nothing.
+CellTally::Record CellTally::take(Cell c) {
+  Record taken{std::vector<Sums>(classes_), std::vector<TallyAmount>(classes_ * amounts_.size())};
+  std::swap_ranges(taken.sums.begin(), taken.sums.end(), &of(c, 0));
+  std::swap_ranges(taken.amounts.begin(), taken.amounts.end(), amounts_of(c, 0));
+  return taken;
+}
+
+void CellTally::give_up(const Record& record) {
+  for (const Sums& s : record.sums) {
+    length_ = dartcast::sum_of(wide(length_) - wide(s.length));
+    time_ = dartcast::sum_of(wide(time_) - wide(s.time));
+  }
+  for (std::size_t i = 0; i < record.amounts.size(); ++i) add_to(amounts_[i % amounts_.size()], -record.amounts[i]);
 }
 
 // Places of removed cells may be those of added ones.
 void CellTally::update_after_edit(const CellComplex& complex, const ComplexEditReport& edit) {
   if (edit.replaced)
     throw InvalidArgument("cell tally: the mesh was replaced, and its cells are others: make a new tally");
-  std::unordered_map<std::uint32_t, Sums> removed;  // by source
+  std::unordered_map<std::uint32_t, Record> removed;  // by source
   for (const CellHandle& h : edit.map.removed) {
-    if (h.cell.index() >= pools_[h.cell.pool()].sums.size()) continue;  // added and removed by the same edit
-    Sums& sums = of(h.cell);
-    removed[pools_[h.cell.pool()].source[h.cell.index()]] += sums;
-    sums = {};
+    const Pool& pool = pools_[h.cell.pool()];
+    if (h.cell.index() >= pool.source.size()) continue;  // added and removed by the same edit
+    removed[pool.source[h.cell.index()]] += take(h.cell);
   }
   fit(complex);
   std::vector<Cell> added;
@@ -168,24 +275,24 @@ void CellTally::update_after_edit(const CellComplex& complex, const ComplexEditR
   std::sort(added.begin(), added.end());
   std::unordered_map<std::uint32_t, std::vector<Cell>> by_source;
   for (const Cell c : added) by_source[complex.map().source(c)].push_back(c);
-  Sums others;
-  for (const auto& [source, sums] : removed) {
+  Record others;
+  for (const auto& [source, record] : removed) {
     const auto found = by_source.find(source);
     if (found != by_source.end()) {
-      share_out(complex, sums, found->second);
+      share_out(complex, record, found->second);
       continue;
     }
-    others += sums;
+    others += record;
   }
   if (!added.empty()) return share_out(complex, others, added);
-  length_ = sum_of(wide(length_) - wide(others.length));
-  time_ = sum_of(wide(time_) - wide(others.time));
+  give_up(others);
 }
 
 std::vector<std::uint64_t> CellTally::words() const {
   std::vector<std::uint64_t> words;
   put(length_, words);
   put(time_, words);
+  for (const TallyAmount& a : amounts_) put(a, words);
   for (const Pool& pool : pools_) {
     for (const Sums& s : pool.sums) {
       put(s.length, words);
@@ -193,20 +300,23 @@ std::vector<std::uint64_t> CellTally::words() const {
       words.push_back(s.visits);
       words.push_back(s.deposited);
     }
+    for (const TallyAmount& a : pool.amounts) put(a, words);
   }
   return words;
 }
 
 void CellTally::set_words(std::span<const std::uint64_t> words) {
   std::size_t cells = 0;
-  for (const Pool& pool : pools_) cells += pool.sums.size();
-  if (words.size() != 2 * digits_of_sum + words_of_cell * cells)
+  for (const Pool& pool : pools_) cells += pool.source.size();
+  const std::size_t of_amounts = digits_of_amount * amounts_.size();
+  if (words.size() != 2 * digits_of_sum + of_amounts + cells * classes_ * (words_of_sums + of_amounts))
     throw InvalidArgument(
         fmt::format("CellTally::set_words: {} words for a complex with {} places of cells: give those "
-                    "that words() returned for this complex",
+                    "that words() returned for this complex, of a tally with as many classes and amounts",
                     words.size(), cells));
   length_ = taken(words);
   time_ = taken(words);
+  for (TallyAmount& a : amounts_) a = taken_amount(words);
   for (Pool& pool : pools_) {
     for (Sums& s : pool.sums) {
       s.length = taken(words);
@@ -215,6 +325,7 @@ void CellTally::set_words(std::span<const std::uint64_t> words) {
       s.deposited = words[1];
       words = words.subspan(2);
     }
+    for (TallyAmount& a : pool.amounts) a = taken_amount(words);
   }
 }
 

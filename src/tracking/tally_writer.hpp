@@ -8,6 +8,8 @@
 #include "dartcast/cell_tally.hpp"
 #include "tracking/passed_facets.hpp"
 #include "tracking/step_run.hpp"
+#include "tracking/tallied.hpp"
+#include "tracking/tally_amount.hpp"
 
 namespace dartcast::detail {
 
@@ -39,25 +41,35 @@ class TallyWriter {
   static constexpr bool waits = false;
   static constexpr bool travels = false;
 
-  explicit TallyWriter(CellTally& tally) : tally_(tally), per_unit_(1.0 / tally.unit_) {}
+  explicit TallyWriter(CellTally& tally)
+      : tally_(tally), per_unit_(1.0 / tally.unit_), shared_(tally.amounts_.size()), whole_(tally.amounts_.size()) {}
   TallyWriter(const TallyWriter&) = delete;
   TallyWriter& operator=(const TallyWriter&) = delete;
   ~TallyWriter() {
     add_shared(tally_.length_, length_);
     add_shared(tally_.time_, time_);
+    for (std::size_t k = 0; k < whole_.size(); ++k) add_shared(tally_.amounts_[k], whole_[k]);
   }
 
-  /// The next steps are added so many times.
-  void set_number(std::uint64_t number) { number_ = number; }
+  /// The next steps are of this particle.
+  void set_particle(const TalliedParticles& particles, std::size_t i) {
+    if (!particles.numbers.empty()) number_ = particles.numbers[i];
+    if (!particles.classes.empty()) class_ = particles.classes[i];
+    if (!particles.amounts.empty()) amounts_ = particles.amounts.subspan(i * whole_.size(), whole_.size());
+  }
 
   /// A whole step within one simplex.
   void stay(Cell cell, double length) {
     const TallySum sum = tally_sum(tally_units(length * per_unit_), number_);
-    CellTally::Sums& sums = tally_.of(cell);
+    CellTally::Sums& sums = tally_.of(cell, class_);
     add_shared(sums.length, sum);
     std::atomic_ref(sums.time.high).fetch_add(number_, std::memory_order_relaxed);
     add_to(length_, sum);
     time_.high += number_;
+    if (amounts_.empty()) return;
+    cell_ = cell;
+    begin_amounts();
+    share_amounts(tally_one);
   }
 
   /// A step of this particle begins. `state` is read as it changes.
@@ -65,6 +77,7 @@ class TallyWriter {
     state_ = &state;
     cell_ = state.cell;
     spent_ = 0;
+    begin_amounts();
   }
   void finish() {
     come_to(state_->cell);
@@ -111,6 +124,17 @@ class TallyWriter {
     const std::uint64_t high = more.high + (low + more.low < more.low ? 1 : 0);
     if (high != 0) std::atomic_ref(sum.high).fetch_add(high, std::memory_order_relaxed);
   }
+  // As add_to().
+  static void add_shared(TallyAmount& sum, const TallyAmount& more) {
+    std::uint64_t carry = 0;
+    for (std::size_t i = 0; i < sum.part.size(); ++i) {
+      const std::uint64_t with_carry = more.part[i] + carry;
+      carry = with_carry < carry ? 1 : 0;
+      if (with_carry == 0) continue;
+      const std::uint64_t before = std::atomic_ref(sum.part[i]).fetch_add(with_carry, std::memory_order_relaxed);
+      if (before + with_carry < with_carry) ++carry;
+    }
+  }
 
   // Its start has these. Returns the length that has been walked.
   template <class Positions, std::size_t N>
@@ -129,18 +153,34 @@ class TallyWriter {
   void come_to(Cell cell) {
     if (cell == cell_) return;
     cell_ = cell;
-    std::atomic_ref(tally_.of(cell).visits).fetch_add(number_, std::memory_order_relaxed);
+    std::atomic_ref(tally_.of(cell, class_).visits).fetch_add(number_, std::memory_order_relaxed);
   }
   void add_length(std::uint64_t units) {
     const TallySum sum = tally_sum(units, number_);
-    add_shared(tally_.of(cell_).length, sum);
+    add_shared(tally_.of(cell_, class_).length, sum);
     add_to(length_, sum);
   }
   // In the cell, up to this time. Rounded times of walks may fall.
   void spend(std::uint64_t until) {
     if (until <= spent_) return;
-    add_shared(tally_.of(cell_).time, tally_sum(until - spent_, number_));
+    add_shared(tally_.of(cell_, class_).time, tally_sum(until - spent_, number_));
     spent_ = until;
+    share_amounts(until);
+  }
+  void begin_amounts() {
+    for (std::size_t k = 0; k < amounts_.size(); ++k) {
+      shared_[k] = {};
+      add_to(whole_[k], tally_amount(amounts_[k]));
+    }
+  }
+  // Likewise.
+  void share_amounts(std::uint64_t until) {
+    const double share = until == tally_one ? 1.0 : static_cast<double>(until) * 0x1p-62;
+    for (std::size_t k = 0; k < amounts_.size(); ++k) {
+      const TallyAmount so_far = tally_amount(amounts_[k] * share);
+      add_shared(tally_.amounts_of(cell_, class_)[k], so_far - shared_[k]);
+      shared_[k] = so_far;
+    }
   }
 
   CellTally& tally_;
@@ -149,8 +189,12 @@ class TallyWriter {
   Cell cell_;
   std::uint64_t spent_ = 0;  // of the step
   std::uint64_t number_ = 1;
-  TallySum length_;                  // of all steps here
-  TallySum time_;                    // likewise
+  std::uint32_t class_ = 0;
+  std::span<const double> amounts_;  // of the step; empty: none
+  std::vector<TallyAmount> shared_;  // of these, so far
+  TallySum length_;                  // of all steps here, as the next two
+  TallySum time_;
+  std::vector<TallyAmount> whole_;
   std::vector<PassedFacet> passed_;  // by a walk
 };
 

@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <stdexcept>
 
+#include "base/exact_sum.hpp"
 #include "base/random.hpp"
 #include "dartcast/cell_complex.hpp"
 #include "dartcast/complex_edit.hpp"
@@ -22,6 +24,7 @@
 #include "support/expectations.hpp"
 #include "support/random_vectors.hpp"
 #include "tracking/place_in_simplex.hpp"
+#include "tracking/tally_amount.hpp"
 
 namespace dartcast::test::cell_tally_test {
 
@@ -144,6 +147,119 @@ TEST(CellTally, ChangesNoStep) {
   }
 }
 
+// Amounts of all sizes: their sum is that of exact numbers. An amount of 1 is shared as the time is.
+TEST(CellTally, SharesAmountsByTimeAndKeepsClassesApart) {
+  for (const bool moves : {false, true}) {
+    std::vector<std::vector<std::uint64_t>> words;
+    for (const auto& [threads, backward] : {std::pair{1U, false}, {4U, false}, {3U, true}}) {
+      Bouncing run(threads, backward, 0.4);
+      const std::size_t count = run.particles.size();
+      CellTally tally(run.environment.complex(), 2, 2);
+      std::vector<std::uint32_t> classes(count);
+      std::vector<double> amounts(2 * count);
+      ExactSum sum;
+      Random random(3);
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::size_t i = backward ? count - 1 - k : k;
+        classes[i] = k % 3 == 0 ? 1 : 0;
+        amounts[2 * i] = classes[i] == 1 ? -2.0 : 1.0;
+        amounts[2 * i + 1] = std::ldexp(random.uniform(-1.0, 1.0), static_cast<int>(random.uniform(-90.0, 60.0)));
+        for (int step = 0; step < 5; ++step) sum.add(amounts[2 * i + 1]);
+      }
+      run.environment.set_tally(&tally, {{}, classes, amounts});
+      for (int step = 0; step < 5; ++step) run.step(moves, false);
+      EXPECT_TRUE(tally.adds_up());
+      EXPECT_DOUBLE_EQ(tally.whole_amount(1), sum.value());
+      EXPECT_EQ(tally.whole_amount(0), 5.0 * (double(count) - 3.0 * std::ceil(double(count) / 3.0)));
+      for (const Cell c : run.environment.map().cells()) {
+        EXPECT_NEAR(tally.amount(c, 0, 0), tally.residence(c, 0), 1e-12);
+        EXPECT_NEAR(tally.amount(c, 0, 1), -2.0 * tally.residence(c, 1), 1e-12);
+        EXPECT_EQ(tally.visits(c), tally.visits(c, 0) + tally.visits(c, 1));
+        EXPECT_NEAR(tally.track_length(c), tally.track_length(c, 0) + tally.track_length(c, 1), 1e-12);
+      }
+      words.push_back(tally.words());
+    }
+    EXPECT_EQ(words[0], words[1]);
+    EXPECT_EQ(words[0], words[2]);
+  }
+}
+
+TEST(CellTally, SharesAmountsOfEditedCells) {
+  Bouncing run;
+  CellTally tally(run.environment.complex(), 2, 1);
+  std::vector<std::uint32_t> classes(run.particles.size());
+  std::vector<double> amounts(run.particles.size());
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    classes[i] = i % 2;
+    amounts[i] = -1e-7 * double(i % 11);
+  }
+  run.environment.set_tally(&tally, {{}, classes, amounts});
+  run.step(false, false);
+  const double whole = tally.whole_amount(0);
+  Environment& e = run.environment;
+  const auto by_source = [&] {
+    std::map<std::uint32_t, double> sums;
+    for (const Cell c : e.map().cells()) sums[e.map().source(c)] += tally.amount(c, 0);
+    return sums;
+  };
+  const std::map<std::uint32_t, double> before = by_source();
+  const Cell divided = run.particles[0].cell;
+  e.edit([&](ComplexEdit& edit) { subdivide(edit, divided); });
+  e.update_after_edit(run.particles);
+  tally.update_after_edit(e.complex(), e.last_edit());
+  EXPECT_TRUE(tally.adds_up());
+  EXPECT_EQ(tally.whole_amount(0), whole);
+  for (const auto& [source, sum] : by_source()) EXPECT_NEAR(sum, before.at(source), -1e-12 * whole);
+  CellTally other(e.complex(), 2, 1);
+  other.set_words(tally.words());
+  EXPECT_EQ(other.words(), tally.words());
+  std::vector<std::uint64_t> twice = tally.words();  // as two ranks add them up
+  for (std::uint64_t& w : twice) w += w;
+  other.set_words(twice);
+  EXPECT_EQ(other.whole_amount(0), 2.0 * whole);
+  EXPECT_TRUE(other.adds_up());
+  CellTally narrow(e.complex());
+  EXPECT_THROW(narrow.set_words(tally.words()), InvalidArgument);
+}
+
+TEST(CellTally, RefusesValuesThatDoNotFit) {
+  Environment environment(box(4), Threads{1});
+  CellTally tally(environment.complex(), 2, 1);
+  Particles particles;
+  const Vec3 from{1.5, 1.6, 1.7};
+  environment.add(particles, {&from, 1});
+  const auto refused = [&](const TalliedParticles& values) {
+    environment.set_tally(&tally, values);
+    return refusal([&] { environment.advance(particles, {&from, 1}); });
+  };
+  const std::vector<std::uint32_t> high = {2};
+  const std::vector<std::uint32_t> many = {0, 1};
+  const std::vector<double> infinite = {HUGE_VAL};
+  const std::vector<double> two = {1.0, 2.0};
+  expect_parts(refused({{}, high, {}}), {"class 2", "has 2"});
+  expect_parts(refused({{}, many, {}}), {"2 classes for 1 particles"});
+  expect_parts(refused({{}, {}, infinite}), {"not finite"});
+  expect_parts(refused({{}, {}, two}), {"2 amounts for 1 particles"});
+  EXPECT_THROW(CellTally(environment.complex(), 0), InvalidArgument);
+  EXPECT_THROW(CellTally(environment.complex(), 1, 257), InvalidArgument);
+}
+
+// Signs, carries over all parts, and both ends of the range.
+TEST(CellTally, AddsAmountsExactly) {
+  for (const double x : {0.0, 1.0, -1.0, 0.1, -3e24, 0x1p-170, -0x1.8p-169, 0x1p-171, 0x1p84, -1e300, 5e-324})
+    EXPECT_EQ(detail::tally_amount(x).value(), std::abs(x) < 0x1p-170 ? 0.0 : std::clamp(x, -0x1p84, 0x1p84)) << x;
+  detail::TallyAmount sum;
+  ExactSum truth;
+  Random random(5);
+  for (int i = 0; i < 10'000; ++i) {
+    const double x = std::ldexp(random.uniform(-1.0, 1.0), static_cast<int>(random.uniform(-60.0, 80.0)));
+    add_to(sum, detail::tally_amount(x));
+    truth.add(x);
+    if (i % 100 != 0) continue;
+    EXPECT_DOUBLE_EQ(sum.value(), truth.value());
+  }
+}
+
 double volume_of(const CellComplex& complex, Cell c) {
   double volume = 0.0;
   for (std::uint16_t s = 0; s < complex.map().shape(c).simplices().size(); ++s) {
@@ -224,6 +340,51 @@ TEST(CellTally, CountsPiecesAlongFacesOnce) {
     double sum = 0.0;
     for (const Cell c : environment.map().cells()) sum += tally.track_length(c);
     EXPECT_NEAR(sum, norm(way), 1e-14 * norm(way));
+  }
+}
+
+// As in openmc-dev/openmc#3622: tracks so near to edges and vertices that cells get pieces of a millionth. None is missed. The
+// truth cuts the track at all planes of the lattice, in exact numbers.
+TEST(CellTally, MissesNoCellBesideEdges) {
+  Environment environment(box(8), Threads{1});
+  CellTally tally(environment.complex());
+  environment.set_tally(&tally);
+  std::map<std::array<int, 3>, double> truth;
+  std::vector<Vec3> from;
+  std::vector<Vec3> to;
+  std::size_t shortest = 0;
+  for (const Vec3& way : {Vec3{4, 4, 4}, Vec3{4, 4, 0}, Vec3{4, -4, 0}, Vec3{4, 2, -2}}) {
+    for (const double near : {0x1p-20, -0x1p-24, 0x1p-30}) {
+      const Vec3 x = Vec3{2.5, way.y < 0 ? 6.5 : 2.5, way.z < 0 ? 6.5 : 2.5} + Vec3{0.0, near, -3.0 * near};
+      from.push_back(x);
+      to.push_back(x + way);
+      std::vector<double> cuts = {0.0, 1.0};
+      for (int k = 0; k < 9; ++k) {
+        for (const auto& [at, along] : {std::pair{x.x, way.x}, {x.y, way.y}, {x.z, way.z}}) {
+          const double t = along == 0.0 ? -1.0 : (k - at) / along;
+          if (t > 0.0 && t < 1.0) cuts.push_back(t);
+        }
+      }
+      std::sort(cuts.begin(), cuts.end());
+      for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+        if (cuts[i] == cuts[i + 1]) continue;
+        const Vec3 middle = x + way * (0.5 * (cuts[i] + cuts[i + 1]));
+        const double length = norm(way) * (cuts[i + 1] - cuts[i]);
+        if (length < 1e-5) ++shortest;
+        truth[{int(middle.x), int(middle.y), int(middle.z)}] += length;
+      }
+    }
+  }
+  EXPECT_GT(shortest, 20U);
+  Particles particles;
+  environment.add(particles, from);
+  environment.advance(particles, to);
+  for (const Cell c : environment.map().cells()) {
+    Vec3 middle;
+    for (const std::uint32_t v : environment.map().view(c).vertices()) middle += environment.positions()[v] * 0.125;
+    const auto found = truth.find({int(middle.x), int(middle.y), int(middle.z)});
+    EXPECT_NEAR(tally.track_length(c), found == truth.end() ? 0.0 : found->second, 1e-14);
+    EXPECT_EQ(tally.visits(c) + (tally.track_length(c) > 0.0 ? 1U : 0U) > 0U, found != truth.end());
   }
 }
 

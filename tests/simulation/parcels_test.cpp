@@ -32,7 +32,7 @@ StatisticsOptions everything() {
   o.impacts = true;
   o.residence = true;
   o.planes = {{"middle", {2.0, 2.0, 2.0}, {1.0, 0.5, 0.25}, 0.0}};
-  o.cells = cell_quantities();
+  o.cells = {"track_length", "residence", "visits", "deposition", "concentration"};
   return o;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "dartcast/cell_tally.hpp"
 #include "support/python.hpp"
 
 namespace py = pybind11;
@@ -16,6 +17,8 @@ struct Entry {
   const char* text;
   std::span<const Argument> arguments = {};
 };
+
+constexpr std::uint32_t all_classes = CellTally::all_classes;  // an argument's value in the headers
 
 #include "docs.inl"
 

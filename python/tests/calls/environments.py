@@ -49,7 +49,7 @@ def of_making() -> Calls:
 
 def of_tallies() -> Calls:
     env, particles = with_particles()
-    tally, other = dc.CellTally(env), dc.CellTally(environment())
+    tally, other = dc.CellTally(env, amounts=1), dc.CellTally(environment())
     env.set_tally(tally)
     env.advance(particles, particles.positions + [0.1, 0.2, 0.1])
     cell = int(particles[0].cell)
@@ -58,6 +58,13 @@ def of_tallies() -> Calls:
         "CellTally.residence": tally.residence, "CellTally.visits": tally.visits, "CellTally.deposited": tally.deposited,
         "CellTally.path_length": tally.path_length, "CellTally.age": tally.age, "CellTally.adds_up": tally.adds_up,
         "CellTally.take_back": lambda: tally.take_back(cell, 0.0), "CellTally.deposit": lambda: tally.deposit(cell),
+        "CellTally.amount": lambda: tally.amount(0), "CellTally.amount: refused": refused(lambda: tally.amount(1)),
+        "CellTally.classes": lambda: tally.classes, "CellTally.amounts": lambda: tally.amounts,
+        "CellTally.whole_amount": lambda: tally.whole_amount(0),
+        "CellTally.whole_amount: refused": refused(lambda: tally.whole_amount(1)),
+        "CellTally.take_back_amounts": lambda: tally.take_back_amounts(cell, [0.0]),
+        "CellTally.take_back_amounts: refused": refused(lambda: tally.take_back_amounts(cell, [])),
+        "CellTally.visits: refused": refused(lambda: tally.visits(1)),
         "CellTally.take_back: refused": refused(lambda: tally.take_back(99999, 0.0)),
         "CellTally.deposit: refused": refused(lambda: tally.deposit(99999)),
         "CellTally.update_after_edit": dc.CellTally(env).update_after_edit, "CellTally.reset": dc.CellTally(env).reset,

@@ -26,7 +26,7 @@ class ChunkTally {
   [[nodiscard]] bool counts(std::size_t i) const { return tallied_.radii.empty() || tallied_.radii[first_ + i] == 0.0; }
   /// For the chunk's step i, which Stepper takes.
   [[nodiscard]] TallyWriter& writer(std::size_t i) {
-    if (!tallied_.numbers.empty()) writer_->set_number(tallied_.numbers[first_ + i]);
+    writer_->set_particle(tallied_.particles, first_ + i);
     return *writer_;
   }
 
