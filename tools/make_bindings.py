@@ -79,7 +79,7 @@ FUNCTIONS = """
     sample_surface sample_volume select_free_regions select_free_values select_patches select_walls set_walls sew
     solid_of_cells solid_of_polyline split_by_plane split_edge split_face summary_json summary_text surface_endings
     trajectory_points unsew verdict_name version vertex_orbit writable_mesh_endings write_lagrangian
-    write_mesh_parts write_report write_wall_hits
+    write_mesh_parts write_report write_sources write_wall_hits
     """.split()
 METHODS = """
     Audit::operator+= CollisionCounts::operator+= ComplexEditReport::now Counters::operator+= Finding::add

@@ -143,11 +143,12 @@ void add_lagrangian(CLI::App& app, int& status) {
   const auto cloud = std::make_shared<std::string>("particles");
   CLI::App* verb = app.add_subcommand("lagrangian", "Write a run's particles into an OpenFOAM case.");
   verb->add_option("RUN", *run, "the folder of a run in the case's mesh")->required()->type_name("FOLDER");
-  verb->add_option("CASE", *target, "the case: frames go to its folders TIME/lagrangian")
-      ->required()
-      ->type_name("FOLDER");
+  verb->add_option("CASE", *target, "the case: frames go to its folders TIME")->required()->type_name("FOLDER");
   verb->add_option("--cloud", *cloud, "the name of the cloud")->type_name("NAME")->capture_default_str();
-  verb->callback([run, target, cloud, &status] {
+  const auto sources = std::make_shared<bool>(false);
+  verb->add_flag("--sources", *sources, "also write momentum_source and energy_source as volume fields");
+  verb->callback([run, target, cloud, sources, &status] {
+    if (*sources) fmt::print("{} frames in {}/*/*_source\n", write_sources(*run, *target), *target);
     fmt::print("{} frames in {}/*/lagrangian/{}\n", write_lagrangian(*run, *target, *cloud), *target, *cloud);
     status = done;
   });

@@ -147,4 +147,10 @@ Summary run_scene(const Scene& scene, const RunOptions& options, const Progress&
 std::size_t write_lagrangian(const std::filesystem::path& run_folder, const std::filesystem::path& openfoam_case,
                              const std::string& cloud = "particles");
 
+/// Writes the source terms of a run's frames as volume fields: TIME/momentum_source (N/m^3) and TIME/energy_source (W/m^3),
+/// those of the two that the run has by cell (dartcast/statistics.hpp). Each is of the steps that are summed in the frame
+/// (StatisticsOptions::cells_every). Patches get zeroGradient, or their own type where OpenFOAM demands it. Returns the number
+/// of frames. Precondition and exceptions: as write_lagrangian(); also Error if the run has no such sums.
+std::size_t write_sources(const std::filesystem::path& run_folder, const std::filesystem::path& openfoam_case);
+
 }  // namespace dartcast

@@ -34,6 +34,6 @@ from ._core import (
     trajectory_points as trajectory_points, trajectory_svg as trajectory_svg, verdict_name as verdict_name,
     version as version, writable_mesh_endings as writable_mesh_endings, write_bytes as write_bytes,
     write_lagrangian as write_lagrangian, write_mesh_parts as write_mesh_parts, write_pathlines as write_pathlines,
-    write_report as write_report, write_wall_hits as write_wall_hits)
+    write_report as write_report, write_sources as write_sources, write_wall_hits as write_wall_hits)
 from ._results import Frame as Frame
 from ._results import Run as Run

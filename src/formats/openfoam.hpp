@@ -51,6 +51,18 @@ std::vector<Vec3> openfoam_points_at(const std::filesystem::path& path, const Re
 std::vector<Vec3> openfoam_cell_vectors(const std::filesystem::path& path, std::string_view field, std::size_t cells,
                                         const ReadOptions& options);
 
+/// The number of cells of a case, and its patches.
+struct OpenFoamSizes {
+  struct Patch {
+    std::string name;
+    std::string type;  ///< as "wall", "empty"
+  };
+  std::size_t cells = 0;
+  std::vector<Patch> patches;
+};
+/// Throws as parse_openfoam().
+OpenFoamSizes openfoam_sizes(const std::filesystem::path& path, const ReadOptions& options);
+
 /// Vector fields of a case at the points of its mesh, time by time.
 ///
 /// Fields at cells are brought there with the points of their time (mesh/point_weights.hpp). If the field's file gives

@@ -169,4 +169,58 @@ TEST_F(SceneVerbs, ParticlesGoBackIntoAnOpenFoamCase) {
   expect_failure("lagrangian out case --cloud a/b", 1, "no name for a cloud");
 }
 
+const std::string slowed_scene = R"(
+[environment]
+mesh = 'case'
+[[particles]]
+count = 200
+velocity = [0.0, 1e-6, 0.0]
+diameter = 1e-3
+density = 1000
+[motion]
+dt = 0.5
+steps = 4
+drag = 3.0
+[output]
+every = 2
+)";
+
+// Particles in still air, which slows them: their loss is in the fields, interval by interval.
+TEST_F(SceneVerbs, SourcesAreFieldsOfAnOpenFoamCase) {
+  BoxOptions options;
+  options.cells = {3, 3, 3};
+  options.size = {1.0, 1.0, 1.0};
+  test::FoamWriter(folder / "case", {}).write(test::foam_mesh(generate_box(options), {{"xmin", "symmetry"}}));
+  (void)write("plain.toml", slowed_scene);
+  (void)write("s.toml", slowed_scene +
+                            "[statistics]\ncells = { quantities = ['momentum_source', 'energy_source'], every = 2 }\n");
+  ASSERT_EQ(run("run s.toml -o out").status, 0);
+  ASSERT_EQ(run("run plain.toml -o plain").status, 0);
+  const Result r = run("lagrangian out case --sources");
+  ASSERT_EQ(r.status, 0) << r.error;
+  EXPECT_EQ(r.out, "3 frames in case/*/*_source\n3 frames in case/*/lagrangian/particles\n");
+  // An interval of 1 s takes the share 1 - exp(-3) of what there was before, in cells of 1/27 m^3.
+  const double momentum = 200.0 * 1e-6 * 1000.0 * 3.14159265358979 / 6.0 * 1e-9;
+  const double lost = 1.0 - std::exp(-3.0);
+  for (const auto& [time, share] : {std::pair{"0", 0.0}, {"1", lost}, {"2", (1.0 - lost) * lost}}) {
+    const std::string text = content(folder / "case" / time / "momentum_source");
+    EXPECT_NE(text.find("class       volVectorField"), std::string::npos);
+    EXPECT_NE(text.find("\"xmin\"\n    {\n        type            symmetry;"), std::string::npos) << text;
+    EXPECT_NE(text.find("type            zeroGradient;"), std::string::npos);
+    std::istringstream values(text.substr(text.find("\n27\n(") + 5));
+    char bracket = 0;
+    double x = 0, y = 0, z = 0, sum = 0;
+    int count = 0;
+    while (values >> bracket >> x >> y >> z >> bracket) {
+      sum += y / 27.0;
+      ++count;
+    }
+    EXPECT_EQ(count, 27);
+    EXPECT_NEAR(sum, momentum * share, 1e-12 * momentum) << time;
+  }
+  // The case reads its new field, at its cells.
+  EXPECT_NE(run("info case/1").out.find("momentum_source"), std::string::npos) << run("info case/1").out;
+  expect_failure("lagrangian plain case --sources", 1, "momentum_source");
+}
+
 }  // namespace dartcast::scene_verbs_test

@@ -305,6 +305,7 @@ def of_runs() -> Calls:
     few = dc.formats.ReportOptions(particles=2, frames=2)
     return {
         "write_lagrangian": refused(lambda: dc.formats.write_lagrangian(shown, FOLDER / "none")),
+        "write_sources": refused(lambda: dc.formats.write_sources(shown, FOLDER / "none")),
         "write_report": lambda: dc.formats.write_report(shown, few),
         "write_report: refused": refused(lambda: dc.formats.write_report(FOLDER / "none")),
         "report_file": lambda: dc.formats.report_file(shown),

@@ -248,6 +248,13 @@ std::vector<Vec3> openfoam_cell_vectors(const fs::path& path, std::string_view f
   return as_vec3(found.values);
 }
 
+OpenFoamSizes openfoam_sizes(const fs::path& path, const ReadOptions& options) {
+  const PolyMesh mesh = case_of(path).read(options.max_memory);
+  OpenFoamSizes sizes{mesh.cells, {}};
+  for (const PolyPatch& p : mesh.patches) sizes.patches.push_back({p.name, p.type});
+  return sizes;
+}
+
 struct OpenFoamPointVectors::AtTime {
   std::string time;  // of the points
   std::size_t cells;
