@@ -33,6 +33,7 @@ struct StatisticsSummary {
   std::vector<std::uint64_t> ended_by_patch;  ///< of these, on faces that edits ended
   std::vector<PlaneTotals> planes;            ///< by plane
   std::vector<LeaveTotals> left;              ///< by the number of the patch
+  std::vector<LeaveTotals> left_by_class;     ///< likewise, of one class after the other
   ResidenceTimes absorbed_by_edits;
   double seconds = 0.0;  ///< of computing
 };

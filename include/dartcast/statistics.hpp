@@ -137,6 +137,8 @@ struct ResidenceTimes {
   /// `first_bin`: the width of a bin at the start, > 0. `number`: of particles. Precondition: seconds >= 0.
   void add(double seconds, double first_bin, std::uint64_t number = 1);
   [[nodiscard]] double mean() const { return count == 0 ? 0.0 : sum / static_cast<double>(count); }
+  /// The washout curve: the share of times that bin i and later ones count; 0 if there is none. Precondition: i < bin_count.
+  [[nodiscard]] double washout(std::size_t i) const;
 
   bool operator==(const ResidenceTimes&) const = default;
 };
@@ -170,7 +172,7 @@ struct StatisticsOptions {
   /// Quantities by cell: some of cell_quantities(), and "user:NAME": the integral over time of this number of user data.
   std::vector<std::string> cells{};
   std::uint64_t cells_every = 0;  ///< sums by cell begin anew after so many steps; 0: never
-  /// Sums by cell are also kept by class. A particle's class is the number of bounds that are at most its diameter, or its
+  /// Sums by cell and residence times are also kept by class. A particle's class is the number of bounds that are at most its diameter, or its
   /// user data of this name. Empty: there are no classes.
   std::string classes_of{};
   std::vector<double> class_bounds{};  ///< they increase; at most 255
@@ -222,9 +224,10 @@ struct PathPoint {
 /// The statistics of a simulation so far. Edits move no particle over a plane: they change positions between steps.
 struct Statistics {
   WallHits hits;
-  std::vector<PlaneTotals> planes;   ///< by plane
-  std::vector<LeaveTotals> left;     ///< by the number of the patch; empty without StatisticsOptions::residence
-  ResidenceTimes absorbed_by_edits;  ///< up to the edit
+  std::vector<PlaneTotals> planes;         ///< by plane
+  std::vector<LeaveTotals> left;           ///< by the number of the patch; empty without StatisticsOptions::residence
+  std::vector<LeaveTotals> left_by_class;  ///< with classes: `left` of class 0, then of class 1, ...
+  ResidenceTimes absorbed_by_edits;        ///< up to the edit
 
   // These are of the last step alone. A checkpoint does not hold them.
   std::vector<PlanePassage> passages;  ///< as find_crossings() orders them

@@ -279,7 +279,8 @@ bool has_statistics(const StatisticsState& s) { return s.has_hits || s.observes_
 template <class Archive>
 void fields(Archive& a, StatisticsState& s) {
   if (!a.has_more(has_statistics(s))) return;
-  auto kept = static_cast<std::uint8_t>((s.has_hits ? 1 : 0) | (s.cells.empty() ? 0 : 2) | (s.has_impacts ? 4 : 0));
+  auto kept = static_cast<std::uint8_t>((s.has_hits ? 1 : 0) | (s.cells.empty() ? 0 : 2) | (s.has_impacts ? 4 : 0) |
+                                        (s.left_by_class.empty() ? 0 : 8));
   a.value(kept);
   s.has_hits = (kept & 1) != 0;
   s.has_impacts = (kept & 4) != 0;
@@ -295,10 +296,12 @@ void fields(Archive& a, StatisticsState& s) {
     fields(a, p.forward);
     fields(a, p.backward);
   });
-  a.list(s.left, [&](LeaveTotals& l) {
+  const auto leave = [&](LeaveTotals& l) {
     fields(a, l.escaped);
     fields(a, l.absorbed);
-  });
+  };
+  a.list(s.left, leave);
+  if ((kept & 8) != 0) a.list(s.left_by_class, leave);
   fields(a, s.absorbed_by_edits);
   a.list(s.starts, [&](StartTimes::Start& start) { values(a, start.first_id, start.time); });
   a.value(s.next_id);

@@ -101,6 +101,7 @@ StatisticsSummary summary_of(const Simulation& simulation) {
   summary.time = simulation.time();
   summary.planes = s.planes;
   summary.left = s.left;
+  summary.left_by_class = s.left_by_class;
   summary.absorbed_by_edits = s.absorbed_by_edits;
   summary.seconds = s.seconds;
   return summary;

@@ -19,6 +19,33 @@ namespace {
 constexpr std::string_view planes_header = "step,time,name,forward,backward,flux,mean_age";
 constexpr std::string_view crossings_header = "step,time,name,id,direction,age,x,y,z";
 
+constexpr std::string_view residence_header = "left,patch,class,time,count,density,washout";
+
+// A row for each bin up to the last that has counts.
+void add_distribution(std::string& table, const std::string& of, const ResidenceTimes& times) {
+  for (std::size_t i = 0; i < ResidenceTimes::bin_count && times.washout(i) > 0.0; ++i) {
+    const double density = static_cast<double>(times.bins[i]) / (static_cast<double>(times.count) * times.bin);
+    table += fmt::format("{},{},{},{},{}\n", of, static_cast<double>(i) * times.bin, times.bins[i], density,
+                         times.washout(i));
+  }
+}
+
+std::string residence_csv(const Simulation& simulation) {
+  const std::vector<std::string>& patches = simulation.environment().map().patch_names();
+  const Statistics& s = simulation.statistics();
+  std::string table = fmt::format("{}\n", residence_header);
+  const auto add = [&](std::span<const LeaveTotals> left, const std::string& of_class) {
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      add_distribution(table, fmt::format("escaped,{},{}", patches[i], of_class), left[i].escaped);
+      add_distribution(table, fmt::format("absorbed,{},{}", patches[i], of_class), left[i].absorbed);
+    }
+  };
+  add(s.left, "");
+  for (std::size_t i = 0; i < s.left_by_class.size(); i += s.left.size())
+    add(std::span(s.left_by_class).subspan(i, s.left.size()), fmt::format("{}", i / s.left.size()));
+  return table;
+}
+
 std::string walls_name(const RecordingFrame& frame) { return frame_name("walls", frame.step, ".vtp"); }
 
 }  // namespace
@@ -98,6 +125,12 @@ void StatisticsRecording::save(FilesProgress& progress) {
 void StatisticsRecording::finish(const Simulation& simulation) {
   end_interval(simulation);
   planes_.send(writing_);
+  if (scene_.options.residence) {
+    writing_.add(0, [table = residence_csv(simulation), to = folder_ / "residence.csv"] {
+      const std::string_view whole = table;
+      replace_file(to, {&whole, 1});
+    });
+  }
   if (!pathlines_.is_open()) return;
   writing_.add(0, [from = folder_ / "pathlines.bin", to = folder_ / "pathlines.vtp", compression = compression_] {
     write_xml(to, read_packed_pathlines(from).data(), compression, replace_file);

@@ -1,5 +1,8 @@
 // The summary of a run, as JSON.
 #include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "dartcast/run.hpp"
 #include "output/summary.hpp"
@@ -170,13 +173,20 @@ Json planes(const StatisticsSummary& s) {
 }
 
 // For the patches where particles left.
-Json residence(const Summary& s) {
+Json residence_at(std::span<const LeaveTotals> left, const std::vector<std::string>& patches) {
   Json json = {{"escaped", Json::object()}, {"absorbed", Json::object()}};
-  const StatisticsSummary& all = *s.statistics;
-  for (std::size_t i = 0; i < all.left.size(); ++i) {
-    if (all.left[i].escaped.count > 0) json["escaped"][s.patch_names[i]] = residence_time(all.left[i].escaped);
-    if (all.left[i].absorbed.count > 0) json["absorbed"][s.patch_names[i]] = residence_time(all.left[i].absorbed);
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    if (left[i].escaped.count > 0) json["escaped"][patches[i]] = residence_time(left[i].escaped);
+    if (left[i].absorbed.count > 0) json["absorbed"][patches[i]] = residence_time(left[i].absorbed);
   }
+  return json;
+}
+
+Json residence(const Summary& s) {
+  const StatisticsSummary& all = *s.statistics;
+  Json json = residence_at(all.left, s.patch_names);
+  for (std::size_t i = 0; i < all.left_by_class.size(); i += all.left.size())
+    json["by_class"].push_back(residence_at(std::span(all.left_by_class).subspan(i, all.left.size()), s.patch_names));
   if (all.absorbed_by_edits.count > 0) json["absorbed_by_edits"] = residence_time(all.absorbed_by_edits);
   return json;
 }

@@ -129,4 +129,10 @@ void ResidenceTimes::add(double seconds, double first_bin, std::uint64_t number)
   bins[static_cast<std::size_t>(place)] += number;
 }
 
+double ResidenceTimes::washout(std::size_t i) const {
+  std::uint64_t later = 0;
+  for (std::size_t k = i; k < bin_count; ++k) later += bins[k];
+  return count == 0 ? 0.0 : static_cast<double>(later) / static_cast<double>(count);
+}
+
 }  // namespace dartcast

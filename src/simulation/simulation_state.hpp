@@ -63,6 +63,7 @@ struct StatisticsState {
   bool observes_motion = false;  ///< what follows is kept
   std::vector<PlaneTotals> planes;
   std::vector<LeaveTotals> left;
+  std::vector<LeaveTotals> left_by_class;
   ResidenceTimes absorbed_by_edits;
   std::vector<StartTimes::Start> starts;
   std::uint64_t next_id = 0;

@@ -35,10 +35,10 @@ void StatisticsComponent::set_options(const StatisticsOptions& options) {
   check_cell_quantities(options.cells);
   if (options.impacts && !options.hits) throw InvalidArgument("statistics: impacts are sums of hits: set hits, too");
   std::optional<TallyPlan> plan;
-  if (options.cells.empty() &&
-      (options.cells_every > 0 || !options.classes_of.empty() || !options.class_bounds.empty()))
-    throw InvalidArgument("statistics: classes and a number of steps are for sums by cell: name quantities in cells");
-  if (!options.cells.empty()) plan.emplace(options, particles_.options(), starts_);
+  if (options.cells.empty() && options.cells_every > 0)
+    throw InvalidArgument("statistics: a number of steps is for sums by cell: name quantities in cells");
+  if (!options.cells.empty() || !options.classes_of.empty() || !options.class_bounds.empty())
+    plan.emplace(options, particles_.options(), starts_);
   options_ = options;
   std::sort(options_.pathlines_of.begin(), options_.pathlines_of.end());
   statistics_ = {};
@@ -49,6 +49,9 @@ void StatisticsComponent::set_options(const StatisticsOptions& options) {
   plan_.reset();
   if (!plan) return;
   plan_.emplace(*plan);
+  if (options.residence && !options.classes_of.empty())
+    statistics_.left_by_class.resize(statistics_.left.size() * plan_->classes());
+  if (options.cells.empty()) return;
   tally_.emplace(particles_.environment().complex(), plan_->classes(), plan_->amounts());
 }
 
@@ -63,6 +66,7 @@ void StatisticsComponent::note_start() {
   ids_.assign(ids.begin(), ids.end());
   before_ = positions_of(particles_.set().states);
   numbers_ = particles_.parcels().numbers(particles_.set());
+  if (!statistics_.left_by_class.empty()) classes_ = plan_->classes_of(particles_.set());
   first_new_ = static_cast<std::size_t>(std::lower_bound(ids.begin(), ids.end(), starts_.next_id()) - ids.begin());
   start_velocities_.assign(velocities.begin() + static_cast<std::ptrdiff_t>(first_new_), velocities.end());
   starts_.add(particles_.set().next_id, particles_.motion().time());
@@ -92,6 +96,9 @@ void StatisticsComponent::count() {
   for (const Leaving& p : leavings_) {
     LeaveTotals& totals = statistics_.left[p.patch.value];
     (p.status == ParticleStatus::escaped ? totals.escaped : totals.absorbed).add(p.age, dt, p.number);
+    if (statistics_.left_by_class.empty()) continue;
+    LeaveTotals& own = statistics_.left_by_class[p.of_class * statistics_.left.size() + p.patch.value];
+    (p.status == ParticleStatus::escaped ? own.escaped : own.absorbed).add(p.age, dt, p.number);
   }
 }
 
@@ -140,7 +147,8 @@ void StatisticsComponent::find_leavings(double begin) {
     const Contact& last = list.contacts[p.contact];
     const double time = begin + last.time_of_impact * dt;
     const auto i = static_cast<std::size_t>(std::lower_bound(ids_.begin(), ids_.end(), p.id) - ids_.begin());
-    leavings_.push_back({p.id, p.status, list.walls_of(last).front().patch, time - starts_.of(p.id), number_of(i)});
+    leavings_.push_back({p.id, p.status, list.walls_of(last).front().patch, time - starts_.of(p.id), number_of(i),
+                         classes_.empty() ? 0 : classes_[i]});
   }
 }
 
@@ -217,7 +225,8 @@ void StatisticsComponent::check(const SimulationState& state) const {
   const StatisticsState& saved = state.statistics;
   if (saved.has_hits != options_.hits || saved.has_impacts != options_.impacts ||
       saved.observes_motion != observes_motion() || saved.planes.size() != options_.planes.size() ||
-      saved.left.size() != statistics_.left.size() || saved.cells.empty() == tally_.has_value())
+      saved.left.size() != statistics_.left.size() || saved.left_by_class.size() != statistics_.left_by_class.size() ||
+      saved.cells.empty() == tally_.has_value())
     throw InvalidArgument("simulation: the checkpoint has other statistics: set those that it was saved with");
 }
 
@@ -230,6 +239,7 @@ void StatisticsComponent::save(SimulationState& state) const {
   saved.observes_motion = observes_motion();
   saved.planes = statistics_.planes;
   saved.left = statistics_.left;
+  saved.left_by_class = statistics_.left_by_class;
   saved.absorbed_by_edits = statistics_.absorbed_by_edits;
   saved.starts = starts_.starts();
   saved.next_id = starts_.next_id();
@@ -245,6 +255,7 @@ void StatisticsComponent::restore(const SimulationState& state) {
   statistics_.hits.restore(particles_.environment(), saved.hits, saved.ended_hits);
   statistics_.planes = saved.planes;
   statistics_.left = saved.left;
+  statistics_.left_by_class = saved.left_by_class;
   statistics_.absorbed_by_edits = saved.absorbed_by_edits;
   statistics_.passages.clear();
   statistics_.path_points.clear();

@@ -21,6 +21,7 @@ struct Leaving {
   Patch patch;                                      // where it left
   double age = 0.0;                                 // s
   std::uint64_t number = 1;                         // of particles that it stands for
+  std::uint32_t of_class = 0;
 };
 
 /// It steps after the particles and before edits that end a step: contacts then still name cells that exist. A step
@@ -39,7 +40,7 @@ class StatisticsComponent final : public SimulationComponent {
   }
   /// None if no quantity is kept by cell.
   [[nodiscard]] CellTally* tally() { return tally_ ? &*tally_ : nullptr; }
-  /// The plan of the tally; none likewise.
+  /// The plan of the tally and of classes; none if there are neither.
   [[nodiscard]] const TallyPlan* plan() const { return plan_ ? &*plan_ : nullptr; }
   [[nodiscard]] double& seconds() { return statistics_.seconds; }
   /// Throws InvalidArgument if the state is of a simulation with other statistics.
@@ -84,6 +85,7 @@ class StatisticsComponent final : public SimulationComponent {
   std::vector<std::uint64_t> ids_;
   std::vector<Vec3> before_;
   std::vector<std::uint64_t> numbers_;  // empty: each stands for itself
+  std::vector<std::uint32_t> classes_;  // empty: there are none
   std::size_t first_new_ = 0;           // those from here on take their first step
   std::vector<Vec3> start_velocities_;  // of these
   std::vector<Vec3> after_;

@@ -74,14 +74,17 @@ std::uint32_t TallyPlan::class_of(const ParticleSet& set, std::size_t i) const {
   return static_cast<std::uint32_t>(std::upper_bound(bounds_.begin(), bounds_.end(), value) - bounds_.begin());
 }
 
+std::vector<std::uint32_t> TallyPlan::classes_of(const ParticleSet& set) const {
+  std::vector<std::uint32_t> classes;
+  for (std::size_t i = 0; by_class_ && i < set.table.rows(); ++i) classes.push_back(class_of(set, i));
+  return classes;
+}
+
 // Numbers of user data may be infinite, or none: they count as 0. Particles that have left have no amounts.
 TallyValues TallyPlan::values(const ParticleSet& set, const Parcels& parcels, std::span<const DragLoss> losses,
                               double middle) const {
-  TallyValues v{parcels.numbers(set), {}, {}};
+  TallyValues v{parcels.numbers(set), classes_of(set), {}};
   const std::size_t count = set.table.rows();
-  if (by_class_) {
-    for (std::size_t i = 0; i < count; ++i) v.classes.push_back(class_of(set, i));
-  }
   v.amounts.reserve(count * sources_.size());
   for (std::size_t i = 0; i < count && !sources_.empty(); ++i) {
     const bool left = leaves(set.statuses()[i]);

@@ -44,6 +44,8 @@ class TallyPlan {
   [[nodiscard]] std::uint32_t amount_of(std::string_view quantity) const;
 
   [[nodiscard]] std::uint32_t class_of(const ParticleSet& set, std::size_t i) const;
+  /// Those of all particles; empty if there are no classes.
+  [[nodiscard]] std::vector<std::uint32_t> classes_of(const ParticleSet& set) const;
   /// The values of a segment. `middle`: its time, s. `losses`: by particle, if needs_losses().
   [[nodiscard]] TallyValues values(const ParticleSet& set, const Parcels& parcels, std::span<const DragLoss> losses,
                                    double middle) const;

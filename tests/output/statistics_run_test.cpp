@@ -188,6 +188,63 @@ TEST_F(StatisticsRun, ResidenceTimesOfBothEndsGoOn) {
   EXPECT_EQ(statistics_of(two), whole);
 }
 
+// Two flows that cross, 4 s from xmin to xmax, and 2 s from ymin to ymax.
+TEST_F(StatisticsRun, ResidenceTimesByInletAndOutlet) {
+  const std::string text = R"(
+[environment]
+generator = "box"
+cells = [8, 2, 2]
+[[particles]]
+inlet = "xmin"
+rate = 100.0
+velocity = [2.0, 0.0, 0.0]
+[[particles]]
+inlet = "ymin"
+rate = 50.0
+velocity = [0.0, 1.0, 0.0]
+[motion]
+dt = 0.01
+steps = 600
+[contact]
+response = "escape"
+[statistics]
+residence = true
+classes = { of = "group" }
+cells = { quantities = ["residence", "momentum"], every = 200 }
+)";
+  run(text, one);
+  const nlohmann::json all = statistics_of(one).at("residence_time");
+  ASSERT_EQ(all.at("by_class").size(), 2U);
+  EXPECT_EQ(all.at("by_class").at(0).at("escaped").at("xmax"), all.at("escaped").at("xmax"));
+  EXPECT_EQ(all.at("by_class").at(1).at("escaped").at("ymax"), all.at("escaped").at("ymax"));
+  EXPECT_EQ(all.at("by_class").at(1).at("escaped").size(), 1U);
+  EXPECT_NEAR(all.at("escaped").at("ymax").at("mean").get<double>(), 2.0, 0.02);
+  const auto rows = rows_of(one / "residence.csv");
+  EXPECT_EQ(rows[0], (std::vector<std::string>{"left", "patch", "class", "time", "count", "density", "washout"}));
+  double share = 0.0;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    if (rows[i][1] != "xmax" || rows[i][2] != "0") continue;
+    EXPECT_EQ(std::stod(rows[i][6]) == 1.0, share == 0.0);
+    share += std::stod(rows[i][5]) * 0.08;
+    EXPECT_EQ(std::stod(rows[i][4]) > 0.0, std::abs(std::stod(rows[i][3]) - 3.98) < 0.081);
+  }
+  EXPECT_NEAR(share, 1.0, 1e-12);
+  const auto cells = rows_of(one / "cells.csv");
+  EXPECT_EQ(cells[0], (std::vector<std::string>{"cell", "x", "y", "z", "residence", "momentum_x", "momentum_y",
+                                                "momentum_z", "residence_group_0", "momentum_group_0_x",
+                                                "momentum_group_0_y", "momentum_group_0_z", "residence_group_1",
+                                                "momentum_group_1_x", "momentum_group_1_y", "momentum_group_1_z"}));
+  double times = 0.0;
+  for (std::size_t i = 1; i < cells.size(); ++i) {
+    times += std::stod(cells[i][12]);
+    EXPECT_NEAR(std::stod(cells[i][4]), std::stod(cells[i][8]) + std::stod(cells[i][12]), 1e-12);
+  }
+  EXPECT_NEAR(times, 2.0 * 50.0 * 2.0, 2.0);  // the last two seconds; 100 particles
+  EXPECT_THROW(run(text, two, 1, false, {}, 433), CutOff);
+  run(text, two, 2, true);
+  expect_same_files();
+}
+
 // The rows of a last, shorter interval and the pathlines are taken back.
 TEST_F(StatisticsRun, AFinishedRunGoesOnToMoreSteps) {
   run(statistics_text, one);

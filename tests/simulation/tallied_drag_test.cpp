@@ -176,6 +176,38 @@ TEST(TalliedAges, OfAPlugFlow) {
   EXPECT_NEAR(sum_of(array(arrays, "user:w")), -2.5 * sum_of(array(arrays, "residence")), 1e-9);
 }
 
+// Laminar flow in a round pipe, whose particles are drawn by their flux: E(t) = t_mean^2 / (2 t^3) from t_mean / 2 on.
+TEST(TalliedAges, AreThoseOfALaminarPipe) {
+  BoxOptions pipe;
+  pipe.cells = {8, 1, 1};
+  pipe.size = {8.0, 1.0, 1.0};
+  Environment environment(generate_box(pipe), Threads{2});
+  SimulationOptions o;
+  o.dt = 0.0625;
+  o.response = Escape{};
+  Simulation s(environment, o);
+  StatisticsOptions options;
+  options.residence = true;
+  s.set_statistics(options);
+  constexpr std::size_t count = 2000;
+  constexpr double mean = 7.5;  // of a way of 7.5 m, at 1 m/s on average
+  std::vector<Vec3> velocities;
+  for (std::size_t i = 0; i < count; ++i)
+    velocities.push_back({2.0 * std::sqrt(1.0 - (double(i) + 0.5) / count), 0.0, 0.0});
+  s.add(std::vector<Vec3>(count, {0.5, 0.5, 0.5}), velocities, std::vector<double>(count, 0.0));
+  while (s.time() < 32.0) s.step();
+  const ResidenceTimes& times = s.statistics().left[environment.map().patch("xmax").value].escaped;
+  const auto share = [&](double t) { return t <= 0.5 * mean ? 0.0 : 1.0 - mean * mean / (4.0 * t * t); };
+  EXPECT_EQ(times.bin, 0.5);
+  EXPECT_NEAR(double(times.count), count * share(32.0), 2.0);
+  for (std::size_t i = 0; i < ResidenceTimes::bin_count; ++i) {
+    const double begin = double(i) * times.bin;
+    EXPECT_NEAR(double(times.bins[i]), count * (share(begin + times.bin) - share(begin)), 2.0) << i;
+    EXPECT_NEAR(times.washout(i), (share(32.0) - share(begin)) / share(32.0), 2e-3);
+  }
+  EXPECT_EQ(ResidenceTimes().washout(0), 0.0);
+}
+
 // A box that pulses, and is sealed: what is in it stays in it.
 TEST(TalliedAges, OfASealedPulsingBoxAreThoseOfAll) {
   Environment environment(box(4.0), Threads{2});
