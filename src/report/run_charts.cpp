@@ -148,6 +148,41 @@ std::vector<Bar> bars_of(const RunJson& object, const char* unit, bool patches =
   return bars;
 }
 
+// Charts of the particles that left: the density of their residence times, and the share that stays longer, by patch.
+std::string charts_of_residence(const RunJson& summary) {
+  const RunJson all = summary.value("/statistics/residence_time"_json_pointer, RunJson::object());
+  std::vector<ChartSeries> densities;
+  std::vector<ChartSeries> washouts;
+  for (const char* kind : {"escaped", "absorbed"}) {
+    const RunJson by_patch = all.value(kind, RunJson::object());
+    for (const auto& [patch, times] : by_patch.items()) {
+      const RunJson histogram = times.value("histogram", RunJson());
+      const auto number = [](const RunJson& value) { return value.is_number() ? value.get<double>() : 0.0; };
+      const double bin = number(times.value("bin", RunJson()));
+      const double count = number(times.value("count", RunJson()));
+      if (!histogram.is_array() || !(bin > 0.0) || !(count > 0.0)) continue;
+      ChartSeries density{fmt::format("{} at {}", kind, patch.empty() ? "no patch" : patch), {}, {}};
+      ChartSeries washout = density;
+      double left = count;
+      for (std::size_t i = 0; i < histogram.size() && left > 0.0; ++i) {
+        const double n = number(histogram[i]);
+        density.x.push_back((static_cast<double>(i) + 0.5) * bin);
+        density.y.push_back(n / (count * bin));
+        washout.x.push_back(static_cast<double>(i) * bin);
+        washout.y.push_back(left / count);
+        left -= n;
+      }
+      densities.push_back(std::move(density));
+      washouts.push_back(std::move(washout));
+    }
+  }
+  if (densities.empty()) return {};
+  return line_chart({.title = "Residence times", .x_label = "time in the scene (s)", .y_label = "density (1/s)"},
+                    densities) +
+         line_chart({.title = "Washout", .x_label = "time in the scene (s)", .y_label = "share that stays longer"},
+                    washouts);
+}
+
 }  // namespace
 
 std::string scene_name(const fs::path& folder) {
@@ -171,6 +206,7 @@ std::string run_charts(const fs::path& folder) {
   out += over_time("Contacts", "contacts in a step", time, {{"contacts", steps["contacts"]}});
   out += bar_chart({.title = "Contacts by patch"},
                    bars_of(summary.value("/contacts/by_patch"_json_pointer, RunJson()), "", true));
+  out += charts_of_residence(summary);
   const auto of_solids = [&](const char* table, const char* column) {
     return contacts_of_solids(folder / table, time.size(), column);
   };

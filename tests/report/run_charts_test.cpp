@@ -48,4 +48,16 @@ TEST_F(RunCharts, RowsThatAreCutOff) {
   EXPECT_TRUE(shows("Contacts of bodies, catheters and solids"));
 }
 
+TEST_F(RunCharts, ResidenceTimes) {
+  EXPECT_FALSE(shows("Washout"));
+  write("summary.json", R"({"statistics": {"residence_time": {"escaped": {"out": {"count": 4, "mean": 0.3, "bin": 0.2,
+    "histogram": [0, 3, 1, 0]}, "none": {"count": 0}}, "absorbed": {"wall": {"count": 2, "bin": 0.1, "histogram": [2]}}}}})");
+  const std::string all = run_charts(folder_);
+  EXPECT_NE(all.find("Residence times"), std::string::npos) << all;
+  EXPECT_NE(all.find("Washout"), std::string::npos);
+  EXPECT_NE(all.find(">escaped at out<"), std::string::npos) << all;
+  EXPECT_NE(all.find(">absorbed at wall<"), std::string::npos);
+  EXPECT_EQ(all.find(">escaped at none<"), std::string::npos);
+}
+
 }  // namespace dartcast::run_charts_test
