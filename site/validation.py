@@ -117,10 +117,42 @@ def sizes(axis: Any) -> None:
     axis.set(title="sizes of drops", xlabel="diameter, um", ylabel="share of smaller ones")
 
 
+def absorption(axis: Any) -> None:
+    frames = run("absorption")
+    axis.plot(times(frames), [len(f.positions) / len(frames[0].positions) for f in frames], **DOTS)
+    t, n = np.linspace(0, times(frames)[-1], 200), np.arange(1, 200)
+    formula(axis, t, 6 / np.pi**2 * (np.exp(-np.outer(t, n**2) * np.pi**2) / n**2).sum(axis=1))
+    axis.set(title="left in an absorbing ball", xlabel="D t / R$^2$", ylabel="share")
+
+
+def penetration(axis: Any) -> None:
+    stuck = run("penetration")[-1].positions[:, 2]
+    z = np.linspace(1, 20, 20)
+    axis.plot(z, [1 - (stuck < one).sum() / 3000 for one in z], **DOTS)
+    x = 0.0125 * np.linspace(0, 20, 200)
+    short = 1 - 2.56 * x ** (2 / 3) + 1.2 * x + 0.177 * x ** (4 / 3)
+    far = 0.819 * np.exp(-3.657 * x) + 0.097 * np.exp(-22.3 * x) + 0.032 * np.exp(-57 * x)
+    formula(axis, x / 0.0125, np.where(x < 0.02, short, far))
+    axis.set(title="diffusion to a tube's wall: come as far", xlabel="z, radii", ylabel="share")
+
+
+def bend(axis: Any) -> None:
+    last, radius = run("bend")[-1], 2.5e-3
+    d = last.arrays["diameter"]
+    x, _, z = last.positions.T
+    kept = (z > 0) & (x > -5.6 * radius) & (np.abs(last.arrays["velocity"]).max(axis=1) == 0)
+    stokes = WATER * d**2 * 3 / (18 * MU * radius)
+    groups = (0.1, 0.2, 0.3, 0.5, 0.8)
+    axis.plot(groups, [(kept & (abs(stokes - one) < 0.01)).sum() / 800 for one in groups], **DOTS)
+    s = np.linspace(0.02, 0.9, 200) / 0.171
+    formula(axis, 0.171 * s, 1 - (1 + s ** (0.452 * s + 2.242)) ** (-2 / np.pi))
+    axis.set(title="bend: deposition, and Pui et al. 1987", xlabel="St", ylabel="share")
+
+
 SCENES = pathlib.Path(sys.argv[1])
 plt.rcParams.update({"svg.hashsalt": "dartcast", "svg.fonttype": "none", "font.size": 9, "axes.titlesize": 9.5})
-figure, axes = plt.subplots(2, 3, figsize=(10, 5.6), layout="constrained")
-for draw, axis in zip((terminal, stopping, diffusion, brownian, turbulence, sizes), axes.flat):
+figure, axes = plt.subplots(3, 3, figsize=(10, 8.4), layout="constrained")
+for draw, axis in zip((terminal, stopping, diffusion, brownian, turbulence, sizes, absorption, penetration, bend), axes.flat):
     draw(axis)
     axis.grid(color="0.92")
 figure.savefig(sys.argv[2], metadata={"Date": None, "Creator": None})

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include "dartcast/scene_file.hpp"
@@ -16,6 +17,8 @@ namespace dartcast::validation_test {
 
 namespace fs = std::filesystem;
 using test::expect_near;
+
+constexpr double pi = 3.14159265358979323846;
 
 // The simulation after all steps of the scene. `each`: is called after every step.
 template <class Each>
@@ -191,7 +194,63 @@ TEST(Validation, FlowsDisperseAsTaylorAndArisSay) {
   EXPECT_NEAR(dispersion("channel.toml", 2.0 / 1050.0), channel, 0.03 * channel);
   if (!test::full_tier()) return;
   const double tube = 1.0 + 400.0 / 48.0;
-  EXPECT_NEAR(dispersion("tube.toml", 1.0 / 720.0), tube, 0.03 * tube);
+  EXPECT_NEAR(dispersion("wedge.toml", 1.0 / 720.0), tube, 0.03 * tube);
+}
+
+// (6 / pi^2) sum n^-2 exp(-n^2 pi^2 D t / R^2) with D = R = 1: particles that start everywhere in the ball.
+TEST(Validation, AnAbsorbingBallKeepsAsManyAsTheSeriesSays) {
+  run("absorption.toml", [](const Simulation& s) {
+    double truth = 0.0;
+    for (int n = 1; n < 60; ++n)
+      truth += 6.0 / (pi * pi * n * n) * std::exp(-n * n * pi * pi * 5e-3 * static_cast<double>(s.steps()));
+    const double share = static_cast<double>(s.particles().size()) / 3000.0;
+    EXPECT_NEAR(share, truth, 4.0 * std::sqrt(truth * (1.0 - truth) / 3000.0)) << s.steps();
+  });
+}
+
+// The share that comes as far as this in a laminar flow, by P. G. Gormley and M. Kennedy, 1949. `far`: pi D z / Q.
+double penetration(double far) {
+  if (far < 0.02) return 1.0 - 2.56 * std::pow(far, 2.0 / 3.0) + 1.2 * far + 0.177 * std::pow(far, 4.0 / 3.0);
+  return 0.819 * std::exp(-3.657 * far) + 0.097 * std::exp(-22.3 * far) + 0.032 * std::exp(-57.0 * far);
+}
+
+TEST(Validation, ATubeLetsThroughWhatGormleyAndKennedySay) {
+  run("penetration.toml", [](const Simulation& s) {
+    if (s.steps() < 400) return;
+    const std::span<const ParticleStatus> all = s.statuses();
+    EXPECT_EQ(std::count(all.begin(), all.end(), ParticleStatus::alive), 0);
+    for (double z = 1.0; z <= 20.0; ++z) {
+      const auto before = [&](const ParticleState& p) { return p.position.z < z; };
+      const std::span<const ParticleState> stuck = s.particles().states();
+      const double share = 1.0 - static_cast<double>(std::count_if(stuck.begin(), stuck.end(), before)) / 3000.0;
+      const double truth = penetration(0.0125 * z);
+      EXPECT_NEAR(share, truth, 4.0 * std::sqrt(truth * (1.0 - truth) / 3000.0)) << z;
+    }
+  });
+}
+
+// D. Y. H. Pui, F. Romay-Novas, B. Y. H. Liu, 1987, for laminar flow. From St = 0.3 on a flow on a coarse mesh is within 0.06,
+// and two sampling errors here.
+TEST(Validation, ABendTakesTheDropsThatPuiFound) {
+  const std::vector<double> stokes = {0.1, 0.2, 0.3, 0.5, 0.8};
+  run("bend.toml", [&](const Simulation& s) {
+    if (s.steps() < 400) return;
+    std::vector<double> share(stokes.size());
+    for (std::size_t i = 0; i < s.particles().size(); ++i) {
+      const Vec3& x = s.particles()[i].position;
+      if (s.statuses()[i] != ParticleStatus::stuck || x.z < 0.0 || x.x < -5.6 * 2.5e-3) continue;
+      const double d = s.diameters()[i];
+      const double st = 1000.0 * d * d * 3.0 / (18.0 * 1.8e-5 * 2.5e-3);
+      const auto group = std::lower_bound(stokes.begin(), stokes.end(), 0.99 * st);
+      share[static_cast<std::size_t>(group - stokes.begin())] += 1.0 / 800.0;
+    }
+    for (std::size_t i = 0; i < stokes.size(); ++i) {
+      const double x = stokes[i] / 0.171;
+      const double truth = 1.0 - std::pow(1.0 + std::pow(x, 0.452 * x + 2.242), -2.0 / pi);
+      const double error = std::sqrt(share[i] * (1.0 - share[i]) / 800.0);
+      EXPECT_NEAR(share[i], truth, (stokes[i] < 0.3 ? 0.15 : 0.06) + 2.0 * error) << stokes[i];
+    }
+  });
 }
 
 }  // namespace dartcast::validation_test

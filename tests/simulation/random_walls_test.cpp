@@ -41,7 +41,7 @@ double surviving(double time) {
   return sum;
 }
 
-constexpr std::size_t count = 8000;
+constexpr std::size_t count = 5000;
 
 double share_left(const Scene& scene, double radius = 0.0) {
   Simulation simulation(scene);
