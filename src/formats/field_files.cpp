@@ -21,18 +21,13 @@ namespace dartcast {
 
 namespace {
 
-// Reads a field from files of the same mesh as the scene's.
+// Reads a field from files of the same mesh as the scene's; null: as the first file's.
 class FieldFiles {
  public:
-  FieldFiles(const FieldScene& field, const MeshData& mesh, const CellsOfScene& cells, const ReadOptions& options,
+  FieldFiles(const FieldScene& field, const MeshData* mesh, const CellsOfScene& cells, const ReadOptions& options,
              std::vector<std::filesystem::path> files)
-      : array_(field.array),
-        at_(field.at),
-        options_(options),
-        files_(std::move(files)),
-        points_(mesh.points.size()),
-        count_(mesh.cell_count()),
-        cells_(cells) {
+      : array_(field.array), at_(field.at), options_(options), files_(std::move(files)), cells_(cells) {
+    if (mesh != nullptr) sizes_ = {mesh->points.size(), mesh->cell_count()};
     if (at_ != FieldPlace::cells) options_.point_fields = {array_};
   }
 
@@ -53,17 +48,18 @@ class FieldFiles {
   }
 
   /// The mesh in file k, with its arrays.
-  [[nodiscard]] MeshData read(std::size_t k) const {
+  [[nodiscard]] MeshData read(std::size_t k) {
     MeshFile file = read_mesh(files_[k], options_);
     for (const Finding& warning : file.report.warnings) {
       if (warning.kind == unread_field + array_) throw InvalidMesh(warning.message);
     }
     MeshData mesh = cells_.mesh_of(std::move(file));
-    if (mesh.points.size() != points_ || mesh.cell_count() != count_) {
+    if (!sizes_) sizes_ = {mesh.points.size(), mesh.cell_count()};
+    if (mesh.points.size() != sizes_->points || mesh.cell_count() != sizes_->cells) {
       throw InvalidMesh(
           fmt::format("{}: {} points and {} cells; the scene's mesh has {} and {}: a field's files must "
                       "have the same mesh",
-                      files_[k].string(), mesh.points.size(), mesh.cell_count(), points_, count_));
+                      files_[k].string(), mesh.points.size(), mesh.cell_count(), sizes_->points, sizes_->cells));
     }
     return mesh;
   }
@@ -72,9 +68,9 @@ class FieldFiles {
   [[nodiscard]] std::vector<Vec3> read_values(std::size_t k) {
     // A case has one mesh for all times: its values alone are enough, unless points have been dropped.
     if (cells_.are_all() && is_openfoam(files_[k])) {
-      if (at_ == FieldPlace::cells) return openfoam_cell_vectors(files_[k], array_, count_, options_);
+      if (at_ == FieldPlace::cells) return openfoam_cell_vectors(files_[k], array_, sizes_->cells, options_);
       std::vector<Vec3> values = to_points_(files_[k], array_, options_);
-      if (values.size() == points_) return values;
+      if (values.size() == sizes_->points) return values;
     }
     return field_values(read(k), array_, at_);
   }
@@ -83,8 +79,10 @@ class FieldFiles {
   std::optional<FieldPlace> at_;
   ReadOptions options_;
   std::vector<std::filesystem::path> files_;
-  std::size_t points_;
-  std::size_t count_;  // of cells
+  struct Sizes {
+    std::size_t points, cells;
+  };
+  std::optional<Sizes> sizes_;
   CellsOfScene cells_;
   OpenFoamPointVectors to_points_;
 };
@@ -109,7 +107,7 @@ class SampledFiles {
   std::size_t at_sample_ = 0;
 };
 
-ArraySamples sampled_files(const FieldScene& field, const MeshData& mesh, const CellsOfScene& cells,
+ArraySamples sampled_files(const FieldScene& field, const MeshData* mesh, const CellsOfScene& cells,
                            const ReadOptions& options, const std::vector<std::filesystem::path>& names) {
   auto files = std::make_shared<SampledFiles>(FieldFiles(field, mesh, cells, options, names), field.array, field.at);
   const ArrayInMesh& first = (*files)(0);
@@ -130,7 +128,7 @@ ArraySamples sampled_files(const FieldScene& field, const MeshData& mesh, const 
 }
 
 // All times are arrays of one file, and are read at once.
-void read_arrays_of_file(FieldScene& field, const MeshData& mesh, const CellsOfScene& cells,
+void read_arrays_of_file(FieldScene& field, const MeshData* mesh, const CellsOfScene& cells,
                          const ReadOptions& options) {
   if (field.files.size() != 1)
     throw InvalidArgument(
@@ -144,7 +142,7 @@ void read_arrays_of_file(FieldScene& field, const MeshData& mesh, const CellsOfS
 
 }  // namespace
 
-void read_field_files(FieldScene& field, const MeshData& mesh, const CellsOfScene& cells, const ReadOptions& options,
+void read_field_files(FieldScene& field, const MeshData* mesh, const CellsOfScene& cells, const ReadOptions& options,
                       const std::vector<std::string>& sample, std::vector<ArraySamples>& sampled) {
   if (field.files.empty() || field.samples.read) return;
   if (is_pattern(field.array)) {
@@ -192,7 +190,7 @@ FrameReader displaced_frames(DeformationScene& scene, const MeshData& mesh, cons
   field.steady = false;
   std::vector<ArraySamples> none;
   try {
-    read_field_files(field, mesh, cells, options, {}, none);
+    read_field_files(field, &mesh, cells, options, {}, none);
   } catch (const Error& e) {
     throw InvalidMesh(fmt::format("deformation: the displacement '{}': {}", scene.displacement, e.what()));
   }

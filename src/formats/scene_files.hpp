@@ -39,9 +39,9 @@ FrameReader frame_reader(std::vector<std::filesystem::path> files, const MeshDat
                          double scale, const ReadOptions& options, std::vector<Finding>& warnings);
 
 /// Makes samples of the field's files, and reads the first one. The others are read when they are needed; that they
-/// exist is checked here. `mesh`: of the scene, read. `sample`: names of other arrays in the same files, of which it adds
-/// the samples. Throws Error and its kinds, naming the file.
-void read_field_files(FieldScene& field, const MeshData& mesh, const CellsOfScene& cells, const ReadOptions& options,
+/// exist is checked here. `mesh`: of the scene, read; null: as in the first file. `sample`: names of other arrays in the
+/// same files, of which it adds the samples. Throws Error and its kinds, naming the file.
+void read_field_files(FieldScene& field, const MeshData* mesh, const CellsOfScene& cells, const ReadOptions& options,
                       const std::vector<std::string>& sample, std::vector<ArraySamples>& sampled);
 
 /// A reader of frames that are the mesh's points plus an array of the deformation's files, which it takes; their times go

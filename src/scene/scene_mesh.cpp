@@ -114,13 +114,11 @@ std::vector<Finding> read_all_but_mesh(Scene& scene, const MeshData* mesh, const
     s.step.times = std::move(series.times);
     s.step.reader = frame_reader(std::move(series.files), mesh, cells, scene.environment.scale, read, warnings);
   }
-  if (mesh != nullptr) {
-    MotionScene& motion = scene.motion;
-    const bool in_files = !motion.field.files.empty();
-    read_field_files(motion.field, *mesh, cells, read, motion.sample, motion.sampled);
-    read_field_files(motion.force, *mesh, cells, read, {}, motion.sampled);
-    if (in_files) motion.sample.clear();
-  }
+  MotionScene& motion = scene.motion;
+  const bool in_files = !motion.field.files.empty();
+  read_field_files(motion.field, mesh, cells, read, motion.sample, motion.sampled);
+  read_field_files(motion.force, mesh, cells, read, {}, motion.sampled);
+  if (in_files) motion.sample.clear();
   for (ParticlesScene& p : scene.particles) {
     auto* placed = std::get_if<PlacedParticles>(&p.source);
     if (placed == nullptr) continue;

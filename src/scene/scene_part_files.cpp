@@ -112,6 +112,8 @@ LoadedScene load_scene_part(Scene scene, Ranks& ranks, const ReadOptions& option
   refuse(e.skip_bad_cells && std::any_of(scene.deformation.begin(), scene.deformation.end(),
                                          [](const DeformationScene& s) { return !s.frames.empty(); }),
          "cells to leave out, with frames,");
+  refuse(e.skip_bad_cells && !(scene.motion.field.files.empty() && scene.motion.force.files.empty()),
+         "cells to leave out, with a field from files,");
   const auto* path = std::get_if<std::filesystem::path>(&e.mesh);
   LoadedScene loaded;
   MeshPart part;

@@ -45,12 +45,35 @@ SimulationOptions options_of(const Scene& scene, Ranks* ranks) {
   return options;
 }
 
+template <class T>
+void select(std::vector<T>& values, std::span<const std::uint32_t> which) {
+  if (values.empty()) return;
+  std::vector<T> some;
+  some.reserve(which.size());
+  for (const std::uint32_t i : which) some.push_back(values[i]);
+  values = std::move(some);
+}
+
+// Samples for a part, of those for the whole mesh. Each rank reads these.
+FieldSamples of_part(FieldSamples samples, const MeshPart* part) {
+  if (part == nullptr) return samples;
+  samples.read = [read = std::move(samples.read), name = samples.name,
+                  which = samples.place == FieldPlace::points ? part->points : part->cells](std::size_t k) {
+    std::vector<Vec3> values = read(k);
+    if (values.size() <= which.back())
+      throw InvalidMesh(fmt::format("{} has {} values at its time {}: the mesh has more", name, values.size(), k));
+    select(values, which);
+    return values;
+  };
+  return samples;
+}
+
 std::optional<VectorField> field_of(const FieldScene& scene, const std::string& name, const MeshData& mesh,
-                                    const CellComplex& complex) {
+                                    const CellComplex& complex, const MeshPart* part) {
   if (!scene.given()) return {};
   if (!scene.samples.read && !scene.files.empty())
     throw InvalidArgument(name + "'s files have not been read; call load_scene_files() first");
-  FieldSamples samples = scene.samples.read ? scene.samples : field_samples_of(scene, mesh);
+  FieldSamples samples = scene.samples.read ? of_part(scene.samples, part) : field_samples_of(scene, mesh);
   samples.name = name;
   return VectorField(complex, std::move(samples), scene.frame);
 }
@@ -69,18 +92,22 @@ void add_integral(std::vector<SampledField>& sampled, const std::string& name, c
                                     known.empty() ? "none" : known));
 }
 
-std::vector<SampledField> sampled_of(const MotionScene& scene, const MeshData& mesh, const CellComplex& complex) {
+std::vector<SampledField> sampled_of(const MotionScene& scene, const MeshData& mesh, const CellComplex& complex,
+                                     const MeshPart* part) {
   if (!scene.sample.empty() && !scene.field.files.empty())
     throw InvalidArgument("the sampled arrays' files have not been read; call load_scene_files() first");
   std::vector<ArraySamples> arrays = scene.sampled;
+  for (ArraySamples& array : arrays) {
+    for (FieldSamples& samples : array.parts) samples = of_part(std::move(samples), part);
+  }
   for (const std::string& name : scene.sample) arrays.push_back(array_samples_of(mesh, name, scene.field.at));
   std::vector<SampledField> sampled;
   for (ArraySamples& array : arrays) {
-    for (std::size_t part = 0; part < array.parts.size(); ++part) {
+    for (std::size_t third = 0; third < array.parts.size(); ++third) {
       std::vector<std::string> names;
-      for (std::size_t k = 3 * part; k < std::min(3 * part + 3, array.components); ++k)
+      for (std::size_t k = 3 * third; k < std::min(3 * third + 3, array.components); ++k)
         names.push_back(component_name(array.name, array.components, k));
-      sampled.push_back({VectorField(complex, std::move(array.parts[part])), std::move(names)});
+      sampled.push_back({VectorField(complex, std::move(array.parts[third])), std::move(names)});
     }
   }
   for (const auto& [name, component] : scene.integrate) add_integral(sampled, name, component);
@@ -97,15 +124,6 @@ std::vector<DeformationStep> steps_of(const std::vector<DeformationScene>& scene
     if (!s.path.empty()) step.path = point_values(mesh, s.path, 1);
   }
   return steps;
-}
-
-template <class T>
-void select(std::vector<T>& values, std::span<const std::uint32_t> which) {
-  if (values.empty()) return;
-  std::vector<T> some;
-  some.reserve(which.size());
-  for (const std::uint32_t i : which) some.push_back(values[i]);
-  values = std::move(some);
 }
 
 // Steps for the points of a part, of those for the whole mesh.
@@ -125,16 +143,15 @@ std::vector<DeformationStep> steps_of_part(std::vector<DeformationStep> steps, s
   return steps;
 }
 
-// `points`: of the rank's part in the whole; empty: the mesh is the whole.
-ResolvedMotion motion_of(const Scene& scene, const MeshData& mesh, const CellComplex& complex,
-                         std::span<const std::uint32_t> points) {
+// `part`: the mesh is that of this part; null: the whole.
+ResolvedMotion motion_of(const Scene& scene, const MeshData& mesh, const CellComplex& complex, const MeshPart* part) {
   ResolvedMotion motion;
-  motion.field = field_of(scene.motion.field, "the velocity field", mesh, complex);
-  motion.force = field_of(scene.motion.force, "the force", mesh, complex);
-  motion.sampled = sampled_of(scene.motion, mesh, complex);
+  motion.field = field_of(scene.motion.field, "the velocity field", mesh, complex, part);
+  motion.force = field_of(scene.motion.force, "the force", mesh, complex, part);
+  motion.sampled = sampled_of(scene.motion, mesh, complex, part);
   if (scene.deformation.empty()) return motion;
   std::vector<DeformationStep> steps = steps_of(scene.deformation, mesh);
-  if (!points.empty()) steps = steps_of_part(std::move(steps), points);
+  if (part != nullptr) steps = steps_of_part(std::move(steps), part->points);
   motion.deformation.emplace(std::move(steps), mesh.points);
   return motion;
 }
@@ -180,9 +197,7 @@ void number_groups(const Scene& scene, ResolvedScene& resolved) {
 void resolve_on(const MeshData& mesh, const Scene& scene, Threads threads, ResolvedScene& resolved) {
   resolved.environment = std::make_unique<Environment>(mesh, threads);
   const CellComplex& complex = resolved.environment->complex();
-  std::span<const std::uint32_t> points;
-  if (resolved.part) points = resolved.part->points;
-  resolved.motion = motion_of(scene, mesh, complex, points);
+  resolved.motion = motion_of(scene, mesh, complex, resolved.part ? &*resolved.part : nullptr);
   for (const SampledField& f : resolved.motion.sampled)
     resolved.options.user_data.insert(resolved.options.user_data.end(), f.names.begin(), f.names.end());
   if (!scene.motion.turbulence.k.empty())
@@ -201,9 +216,8 @@ void resolve_on(const MeshData& mesh, const Scene& scene, Threads threads, Resol
 auto motion_in_parts(const Scene& scene) {
   auto rest = std::make_shared<Scene>(scene);
   rest->environment = {};
-  return [rest](const MeshPart& part, const CellComplex& complex) {
-    return motion_of(*rest, part.mesh, complex, part.points);
-  };
+  return
+      [rest](const MeshPart& part, const CellComplex& complex) { return motion_of(*rest, part.mesh, complex, &part); };
 }
 
 }  // namespace

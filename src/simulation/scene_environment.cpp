@@ -111,9 +111,6 @@ void check_can_be_spread(const Scene& scene) {
   refuse_if(scene.motion.integrator != Integrator::euler, "the integrator rk4");
   refuse_if(scene.motion.brownian_bridge, "a Brownian bridge");
   refuse_if(scene.motion.wall_motion != WallMotion::carried, "points that move at the same time as the walls");
-  for (const FieldScene* field : {&scene.motion.field, &scene.motion.force})
-    refuse_if(!field->files.empty() || static_cast<bool>(field->samples.read), "a field from files");
-  refuse_if(!scene.motion.sampled.empty(), "arrays to sample from files");
   for (const ParticlesScene& p : scene.particles) {
     refuse_if(p.radius > 0.0 || p.interception, "spheres");
     const auto* placed = std::get_if<PlacedParticles>(&p.source);

@@ -8,6 +8,9 @@
 #include <fstream>
 #include <functional>
 #include <limits>
+#include <map>
+#include <mutex>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,6 +23,7 @@
 #include "formats/file_series.hpp"
 #include "simulation/series.hpp"
 #include "support/expectations.hpp"
+#include "support/thread_ranks.hpp"
 
 namespace dartcast::scene_fields_test {
 
@@ -327,6 +331,58 @@ TEST_F(SceneFields, BadCellsAreLeftOutOfFieldsToo) {
   simulation.step();
   for (std::size_t k = 0; k < sources.size(); ++k)
     expect_near(simulation.velocities()[k], at_cell(sources[k], 0), 1e-15);
+}
+
+// The places, by id, after 14 steps; the parts of the cells change after 10.
+std::map<std::uint64_t, std::pair<Vec3, std::vector<double>>> ends(Simulation& simulation) {
+  for (int i = 0; i < 14; ++i) simulation.step();
+  std::map<std::uint64_t, std::pair<Vec3, std::vector<double>>> all;
+  for (std::size_t i = 0; i < simulation.particles().size(); ++i) {
+    const std::span<const double> data = simulation.user_data(i);
+    all[simulation.ids()[i]] = {simulation.particles()[i].position, {data.begin(), data.end()}};
+  }
+  return all;
+}
+
+TEST_F(SceneFields, RanksThatShareTheCellsReadTheSameFiles) {
+  for (const char* motion : {"field = { array = 'U', files = 'flow.pvd' }\nsample = ['C']",
+                             "field = { array = 'C', files = 'flow.pvd' }\nsample = ['U']",
+                             "field = { array = 'C', at = 'points', files = 'flow.pvd' }",
+                             "field = { array = 'U_*', files = ['mesh.vtu'], spacing = 1.0 }\ndrag = 2.0\n"
+                             "force = { array = 'U', files = 'flow.pvd' }"}) {
+    SCOPED_TRACE(motion);
+    Scene scene = parse(std::string(motion) + "\n[[particles]]\ncount = 200");
+    Simulation alone(load_scene_files(scene).scene);
+    const auto truth = ends(alone);
+    ASSERT_EQ(truth.size(), 200U);
+    std::size_t count = 0;
+    std::mutex mutex;
+    test::on_ranks(3, [&](Ranks& ranks) {
+      Simulation shared(load_scene_part(scene, ranks).scene, Threads{1}, &ranks, Partition::cells);
+      const auto some = ends(shared);
+      const std::lock_guard lock(mutex);
+      count += some.size();
+      for (const auto& [id, end] : some) EXPECT_EQ(end, truth.at(id)) << id;
+    });
+    EXPECT_EQ(count, truth.size());
+  }
+}
+
+// The file of the second time has a cell fewer.
+TEST_F(SceneFields, RanksThatShareTheCellsRefuseFilesOfAnotherMesh) {
+  BoxOptions o;
+  o.cells = {3, 3, 2};
+  MeshData other = generate_box(o);
+  add_arrays(other, "U", "C", 1.0);
+  write_mesh(other, folder_ / "U_9.vtu");
+  const Scene scene = parse("field = { array = 'U', files = 'flow.pvd' }");
+  EXPECT_THROW(test::on_ranks(2,
+                              [&](Ranks& ranks) {
+                                Simulation shared(load_scene_part(scene, ranks).scene, Threads{1}, &ranks,
+                                                  Partition::cells);
+                                for (int i = 0; i < 10; ++i) shared.step();
+                              }),
+               InvalidMesh);
 }
 
 TEST(FieldSeries, NumbersAreInOrder) {
