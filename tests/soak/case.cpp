@@ -44,6 +44,8 @@ std::span<const KnobText> knob_texts() {
       {Knob::ranks, "ranks", {"off", "2", "3"}},
       {Knob::throws, "throws", {"off", "on"}},
       {Knob::surface, "surface", {"off", "on"}},
+      {Knob::periodic, "periodic", {"off", "one axis", "all axes", "turned"}},
+      {Knob::meets, "meets", {"off", "on"}},
   };
   return texts;
 }
@@ -91,9 +93,25 @@ Case draw_case(std::uint64_t seed) {
   c[Knob::particles] = 8 + random.below(random.below(4) == 0 ? 392 : 72);
   for (const Knob k : {Knob::mover, Knob::ranks, Knob::throws, Knob::simultaneous, Knob::spheres, Knob::state})
     if (random.below(2) == 0) c[k] = 0;
+  if (random.below(3) != 0) c[Knob::periodic] = 0;
   // A crowd costs little beside the edits and the checks of cells. The first seeds are a short test.
   if (seed > 1000 && random.below(6) == 0 && !c.is(Knob::mover, "simulation"))
     c[Knob::particles] = 1000 + random.below(19000);
+  return c;
+}
+
+// Scenes with periodic pairs refuse edits, and all but points. Their meshes are boxes, which move so that pairs fit.
+Case admitted(Case c) {
+  if (c[Knob::periodic] == 0) return c;
+  for (const Knob k : {Knob::edit, Knob::edits, Knob::simultaneous, Knob::spheres, Knob::surface}) c[k] = 0;
+  if (!c.is(Knob::mover, "simulation")) c[Knob::mover] = c[Knob::ranks] = 0;
+  c[Knob::particles] = std::min(c[Knob::particles], 1000U);  // a long way has hundreds of passages
+  if (c.is(Knob::mesh, "patchwork") || c.is(Knob::mesh, "octahedra")) set(c, "mesh = mixed");
+  if (c.is(Knob::mesh, "slivers")) set(c, "mesh = tetrahedra");
+  if (c.is(Knob::mesh, "vessel")) set(c, "mesh = hexahedra");
+  if (c.is(Knob::mesh, "maze")) set(c, "mesh = plane");
+  if (c.is(Knob::motion, "turn") || c.is(Knob::motion, "twist") || c.is(Knob::motion, "wave"))
+    set(c, "motion = frames");
   return c;
 }
 

@@ -34,9 +34,11 @@ enum class Knob : std::uint8_t {
   spheres,       ///< whether there are spheres
   ranks,         ///< how many share the cells
   throws,        ///< whether responses and edits throw in their middle
-  surface        ///< whether particles step on the walls, too
+  surface,       ///< whether particles step on the walls, too
+  periodic,      ///< which sides lead to each other
+  meets          ///< whether solids meet each other
 };
-inline constexpr std::size_t knob_count = 22;
+inline constexpr std::size_t knob_count = 24;
 
 /// A knob's name and the names of its values. A knob whose values are amounts has one name and a number of values.
 struct KnobText {
@@ -59,6 +61,9 @@ struct Case {
   [[nodiscard]] bool is(Knob k, std::string_view value) const { return name(k) == value; }
   bool operator==(const Case&) const = default;
 };
+
+/// The case with what its features admit beside each other: others are turned off.
+Case admitted(Case c);
 
 /// The case of a seed.
 Case draw_case(std::uint64_t seed);

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "dartcast/predicates.hpp"
+#include "soak/periodic.hpp"
 #include "support/particle_checks.hpp"
 
 namespace dartcast::soak {
@@ -21,6 +22,19 @@ WallResponse response_of(const Case& c) {
   if (name == "stick") return Stick{};
   if (name == "absorb") return Absorb{};
   return Reflect{c.seed % 3 == 0 ? 1.0 : 0.6, c.seed % 2 == 0 ? 0.0 : 0.2};
+}
+
+// A multiple of 2^-30, of 1/4, or of 1 nearby.
+Vec3 on_lattice(const Vec3& x, Random& random) {
+  const double unit = std::array{0x1p-30, 0.25, 1.0}[random.below(3)];
+  return {std::floor(x.x / unit) * unit, std::floor(x.y / unit) * unit, std::floor(x.z / unit) * unit};
+}
+
+// Where a point is in another copy of a mesh with pairs.
+Vec3 image_of(const SceneMesh& scene, Vec3 x, Random& random) {
+  for (const Placing& pair : scene.pairs)
+    for (std::uint32_t i = random.below(4); i > 0; --i) x = (random.below(4) == 0 ? pair.inverse() : pair).point(x);
+  return x;
 }
 
 }  // namespace
@@ -86,7 +100,12 @@ Crowd::Crowd(const Case& c, const SceneMesh& scene, Environment& environment, st
     const bool at_vertex = c.is(Knob::places, "at vertices") || (c.is(Knob::places, "mixed") && id % 2 == 0);
     Vec3 x = {random.uniform(scene.low.x, scene.high.x), random.uniform(scene.low.y, scene.high.y),
               random.uniform(scene.low.z, scene.high.z)};
-    if (at_vertex) x = positions[random.below(static_cast<std::uint32_t>(positions.size()))];
+    if (c[Knob::periodic] != 0 && random.below(3) == 0)
+      x = place_on_border(scene, random);
+    else if (c[Knob::periodic] != 0 && random.below(2) == 0)
+      x = on_lattice(x, random);
+    else if (at_vertex)
+      x = positions[random.below(static_cast<std::uint32_t>(positions.size()))];
     if (!is_finite(x)) continue;
     places.push_back(x);
     numbers.push_back(id);
@@ -127,11 +146,14 @@ std::vector<Vec3> Crowd::targets(const Environment& environment, std::uint64_t s
     const double far = length == "a cell"        ? std::pow(10.0, random.uniform(-2.0, 0.3))
                        : length == "10^-6 cells" ? std::pow(10.0, random.uniform(-6.0, -3.0))
                                                  : std::pow(10.0, random.uniform(0.3, 2.5));
-    Vec3 to = from + way * (far * scene_.edge);
+    const bool periodic = case_[Knob::periodic] != 0;
+    const double scale = periodic && random.below(2) == 0 ? std::ldexp(1.0, int(std::log2(far))) : far;
+    Vec3 to = from + way * (scale * scene_.edge);
     if (kind == "vertices") {  // through a vertex, or to it
       const auto positions = environment.positions();
-      const Vec3& v = positions[random.below(static_cast<std::uint32_t>(positions.size()))];
-      to = random.below(2) == 0 ? v : from + (v - from) * far;
+      Vec3 v = positions[random.below(static_cast<std::uint32_t>(positions.size()))];
+      if (periodic) v = image_of(scene_, v, random);
+      to = random.below(2) == 0 ? v : from + (v - from) * scale;
     }
     if (plane) to.z = 0.0;
     const bool stays = statuses[i] != ParticleStatus::alive;

@@ -9,7 +9,6 @@
 #include "dartcast/bodies.hpp"
 #include "dartcast/catheter.hpp"
 #include "dartcast/error.hpp"
-#include "dartcast/solids.hpp"
 #include "dartcast/validity.hpp"
 #include "soak/simulation.hpp"
 #include "support/particle_checks.hpp"
@@ -19,15 +18,6 @@
 namespace dartcast::soak {
 
 namespace {
-
-Vec3 place_in(const SceneMesh& scene, Random& random) {
-  return {random.uniform(scene.low.x, scene.high.x), random.uniform(scene.low.y, scene.high.y),
-          random.uniform(scene.low.z, scene.high.z)};
-}
-// Walls of inverted cells may lie over cells that are valid: only a scene without them has one truth in space.
-std::string check_audit(const Case& c, const Environment& environment, const SolidAudit& audit) {
-  return audit.failed > 0 && !has_bent_sheets(c) && environment.validity(1).valid() ? audit.first : "";
-}
 
 class EnvironmentAlone : public Mover {
  public:
@@ -40,64 +30,6 @@ class EnvironmentAlone : public Mover {
 
  private:
   Environment& environment_;
-};
-
-class Solids : public Mover {
- public:
-  Solids(const Case& c, const SceneMesh& scene, Environment& environment)
-      : case_(c), scene_(scene), environment_(environment), solids_(environment) {
-    Random random = random_for(c, Use::mover);
-    for (int tries = 0; tries < 40 && solids_.size() < 3; ++tries) {
-      const double size = scene.edge * random.uniform(0.05, 0.7);
-      solids_.add(test::moved(random.below(3) == 0 ? test::rod(3, size) : test::ball(size), place_in(scene, random)));
-    }
-  }
-  [[nodiscard]] bool empty() const { return solids_.size() == 0; }
-
-  std::string move(const std::optional<std::vector<Vec3>>& next, std::uint64_t step, Seen& seen) override {
-    Random random = random_for(case_, Use::mover, step + 1);
-    std::vector<Vec3> to(solids_.positions().begin(), solids_.positions().end());
-    const double size = scene_.edge * (random.below(4) == 0 ? 3.0 : 0.3);
-    const Vec3 way = test::random_vector(random, 1.0) * size;
-    for (Vec3& x : to) x += way + test::random_vector(random, 1.0) * (0.1 * size);
-    const SolidStepOptions options{.rounds = random.below(3) == 0 ? 0U : 6U};
-    const std::vector<Vec3> before(solids_.positions().begin(), solids_.positions().end());
-    if (case_[Knob::throws] != 0) {
-      std::vector<Vec3> bad = to;
-      bad.back().x = NAN;
-      bool thrown = false;
-      try {
-        if (next) solids_.move_with(bad, *next, options);
-        if (!next) solids_.advance(bad, options);
-      } catch (const InvalidArgument&) {
-        thrown = true;
-        seen.note(Mark::thrown);
-      }
-      if (!thrown) return "targets that are no numbers are taken";
-      for (std::size_t i = 0; i < before.size(); ++i)
-        if (test::bits(before[i]) != test::bits(solids_.positions()[i])) return "a step that threw has moved a solid";
-    }
-    const SolidStep& made = next ? solids_.move_with(to, *next, options) : solids_.advance(to, options);
-    for (const SolidContact& c : made.contacts)
-      if (std::abs(norm(c.normal) - 1.0) > 1e-12) return "a contact has a normal that is no unit";
-    if (!made.contacts.empty()) seen.note(Mark::solid_contact);
-    if (made.walls_made < 1.0) seen.note(Mark::walls_stopped);
-    if (!solids_.stuck().empty()) seen.note(Mark::stuck);
-    std::string wrong = check_audit(case_, environment_, solids_.audit());
-    if (!wrong.empty()) return wrong;
-    wrong = test::check_states(environment_, solids_.particles());
-    return wrong.empty() ? "" : "a vertex: " + wrong;
-  }
-  void edit(const std::function<void(ComplexEdit&)>& make) override {
-    environment_.edit(make);
-    solids_.update_after_edit();
-  }
-
- private:
-  const Case& case_;
-  const SceneMesh& scene_;
-  Environment& environment_;
-  SolidSet solids_;
 };
 
 class BodiesMover : public Mover {
@@ -217,10 +149,20 @@ std::unique_ptr<Mover> unless_empty(const Case& c, const SceneMesh& scene, Envir
 
 }  // namespace
 
+Vec3 place_in(const SceneMesh& scene, Random& random) {
+  return {random.uniform(scene.low.x, scene.high.x), random.uniform(scene.low.y, scene.high.y),
+          random.uniform(scene.low.z, scene.high.z)};
+}
+
+// Walls of inverted cells may lie over cells that are valid: only a scene without them has one truth in space.
+std::string check_audit(const Case& c, const Environment& environment, const SolidAudit& audit) {
+  return audit.failed > 0 && !has_bent_sheets(c) && environment.validity(1).valid() ? audit.first : "";
+}
+
 std::unique_ptr<Mover> make_mover(const Case& c, const SceneMesh& scene, Environment& environment) {
   std::unique_ptr<Mover> mover;
   const bool space = environment.map().dimension() == 3;
-  if (space && c.is(Knob::mover, "solids")) mover = unless_empty<Solids>(c, scene, environment);
+  if (space && c.is(Knob::mover, "solids")) mover = make_solids_mover(c, scene, environment);
   if (space && c.is(Knob::mover, "bodies")) mover = unless_empty<BodiesMover>(c, scene, environment);
   if (space && c.is(Knob::mover, "catheter")) mover = unless_empty<CatheterMover>(c, scene, environment);
   if (c.is(Knob::mover, "simulation")) mover = make_simulation_mover(c, scene, environment);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "dartcast/environment.hpp"
+#include "dartcast/solids.hpp"
 #include "soak/guests.hpp"
 #include "soak/scene.hpp"
 #include "soak/seen.hpp"
@@ -30,6 +31,14 @@ class Mover {
     return false;
   }
 };
+
+/// Solids; null where none finds a place.
+std::unique_ptr<Mover> make_solids_mover(const Case& c, const SceneMesh& scene, Environment& environment);
+
+/// A place in the box of the scene.
+Vec3 place_in(const SceneMesh& scene, Random& random);
+/// The first fault that an audit has found, if a scene is valid.
+std::string check_audit(const Case& c, const Environment& environment, const SolidAudit& audit);
 
 /// The mover of the case; where its solids, bodies or catheter find no place, the environment itself.
 std::unique_ptr<Mover> make_mover(const Case& c, const SceneMesh& scene, Environment& environment);

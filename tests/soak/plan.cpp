@@ -6,6 +6,7 @@
 
 #include "dartcast/combinatorial_map.hpp"
 #include "dartcast/error.hpp"
+#include "soak/periodic.hpp"
 #include "support/random_vectors.hpp"
 #include "support/solid_scenes.hpp"
 
@@ -41,7 +42,19 @@ Plan::Plan(const Case& c, const SceneMesh& scene)
 
 bool Plan::has_inlet() const { return has(16) && !door_.empty(); }
 
-std::vector<double> Plan::user_data() const { return has(3) ? std::vector{1.5, -0.0, 3.0} : std::vector<double>{}; }
+bool Plan::flies_freely() const {
+  const SimulationOptions o = options(nullptr);
+  return case_.is(Knob::periodic, "all axes") && case_.is(Knob::walls, "sides") && case_[Knob::motion] == 0 &&
+         !has_field() && !has_inlet() && o.diffusion == 0.0 && o.forces.terms.empty();
+}
+
+std::vector<double> Plan::user_data() const {
+  std::vector<double> data = has(3) ? std::vector{1.5, -0.0, 3.0} : std::vector<double>{};
+  if (case_[Knob::periodic] == 0) return data;
+  data.insert(data.end(), {1.0, 2.0, 4.0});
+  data.resize(data.size() + scene_.pairs.size());
+  return data;
+}
 
 Vec3 Plan::velocity() const {
   const Vec3 v = test::random_vector(*in(1), scene_.edge * 20.0);
@@ -72,14 +85,41 @@ Scene Plan::scene() const {
     s.motion.turbulence.k = "k";
     s.motion.turbulence.omega = "omega";
   }
+  if (has_varying_diffusion()) add_diffusivity(s);
   s.user_data = o.user_data;
+  s.user_data.resize(o.user_data.size() - scene_.pairs.size());  // a scene counts images itself
+  for (ParticlesScene& group : s.particles) group.user_data.resize(s.user_data.size());
   s.motion.dt = o.dt;
   s.motion.gravity = o.gravity;
   s.motion.drag = o.drag;
   s.motion.forces = o.forces;
-  s.motion.diffusion = o.diffusion;
+  if (!has_varying_diffusion()) s.motion.diffusion = o.diffusion;
   s.contact.general = o.response;
   return s;
+}
+
+void Plan::add_diffusivity(Scene& s) const {
+  const auto random = in(8);
+  auto& points = std::get<MeshData>(s.environment.mesh);
+  DataArray& array = points.point_data.emplace_back(DataArray{"D", 1, {}});
+  const double largest = 0.05 * scene_.edge * scene_.edge;
+  for (const Vec3& x : points.points)
+    array.values.push_back(has_linear_diffusion()  ? diffusivity(x)
+                           : random->below(4) == 0 ? 0.0
+                                                   : random->uniform(0.0, largest));
+  s.motion.sample.push_back("D");
+  s.motion.diffusivity = "D";
+}
+
+double Plan::diffusivity(const Vec3& x) const {
+  return 0.01 * scene_.edge * scene_.edge + dot(diffusivity_gradient(), x - scene_.low);
+}
+
+Vec3 Plan::diffusivity_gradient() const {
+  const auto random = in(9);
+  const double most = 0.02 * scene_.edge * scene_.edge / norm(scene_.high - scene_.low);
+  const Vec3 g = {random->uniform(0.0, most), random->uniform(0.0, most), random->uniform(0.0, most)};
+  return space_ ? g : Vec3{g.x, g.y, 0.0};
 }
 
 SimulationOptions Plan::options(Ranks* ranks) const {
@@ -91,6 +131,8 @@ SimulationOptions Plan::options(Ranks* ranks) const {
   o.drag = has(2) ? 2.0 : 0.0;
   o.response = response();
   if (has(3)) o.user_data = {"first", "second", "number"};
+  if (case_[Knob::periodic] != 0) o.user_data.insert(o.user_data.end(), {"arrow_x", "arrow_y", "arrow_z"});
+  for (const PeriodicPair& pair : scene_.mesh.periodic) o.user_data.push_back("image_" + pair.a);
   if (has_field() && has(13) && o.drag == 0.0 && !collides() && case_[Knob::simultaneous] == 0)
     o.integrator = Integrator::rk4;
   else if (has(17) && o.drag == 0.0 && !collides())
@@ -110,8 +152,10 @@ void Plan::fill(Simulation& s, bool particles) const {
   if (has_field()) s.set_field({s.environment().complex(), field(), has(15) ? FieldFrame::mesh : FieldFrame::space});
   if (has_inlet()) s.add_inlet(s.environment().map().patch(door_), 40.0, {}, 0.0, user_data(), material());
   if (case_[Knob::edit] != 0) s.set_events(events());
-  if (space_ && has(6)) s.set_remeshing({.every = 2, .options = {}});
-  if (space_ && has(7)) s.set_adaptive_subdivision({.every = 2, .options = {.max_particles = 6, .min_particles = 2}});
+  const bool periodic = case_[Knob::periodic] != 0;
+  if (space_ && has(6) && !periodic) s.set_remeshing({.every = 2, .options = {}});
+  if (space_ && has(7) && !periodic)
+    s.set_adaptive_subdivision({.every = 2, .options = {.max_particles = 6, .min_particles = 2}});
   if (particles) s.add_random(has(8) ? 60 : 12, velocity(), 0.0, user_data(), material());
   if (particles && has(25)) {
     ParticlesScene many{RandomParticles{6}, velocity(), 0.0, user_data(), false, material()};
@@ -119,9 +163,10 @@ void Plan::fill(Simulation& s, bool particles) const {
     s.add(many);
   }
   if (particles && has_spheres()) s.add_random(10, {}, 0.15 * scene_.edge, {}, material());
-  if (space_ && has(9)) add_body(s);
-  if (space_ && has(10)) add_solid(s);
-  if (space_ && has(11)) add_catheter(s);
+  if (!space_ || periodic) return;
+  if (has(9)) add_body(s);
+  for (int i = 0; has(10) && i < (case_[Knob::meets] != 0 ? 4 : 1); ++i) add_solid(s, i);
+  if (has(11)) add_catheter(s);
 }
 
 std::unique_ptr<Random> Plan::in(std::uint64_t part) const {
@@ -172,6 +217,14 @@ std::vector<Vec3> Plan::field() const {
 DeformationStep Plan::deformation() const {
   const auto random = in(2);
   DeformationStep d;
+  if (case_[Knob::periodic] != 0) {
+    d.kind = DeformationKind::frames;
+    for (std::uint64_t k = 0; k < 4; ++k) {
+      d.times.push_back(2.0 * dt * double(k));
+      d.frames.push_back(k == 0 ? scene_.mesh.points : shaken_alike(case_, scene_, k, 0.05));
+    }
+    return d;
+  }
   d.centre = (scene_.low + scene_.high) * 0.5;
   d.period = random->uniform(0.2, 2.0);
   d.length = norm(scene_.high - scene_.low);
@@ -247,11 +300,11 @@ void Plan::add_body(Simulation& s) const {
   }
 }
 
-void Plan::add_solid(Simulation& s) const {
-  const auto random = in(5);
+void Plan::add_solid(Simulation& s, int number) const {
+  const auto random = in(number == 0 ? 5U : 20U + static_cast<unsigned>(number));
   for (int tries = 0; tries < 20; ++tries) {
     SolidScene solid;
-    solid.name = "tool";
+    solid.name = "tool" + (number == 0 ? "" : std::to_string(number));
     const double size = scene_.edge * random->uniform(0.05, 0.4);
     solid.shape = std::vector<Vec3>{{}, {size, 0.0, 0.0}, {size, size, 0.0}};
     solid.at = place(*random);

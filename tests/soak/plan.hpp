@@ -23,8 +23,15 @@ class Plan {
   [[nodiscard]] SimulationOptions options(Ranks* ranks) const;
   [[nodiscard]] bool collides() const { return has_spheres() && has(4); }
   [[nodiscard]] bool has_field() const { return has(12); }
+  /// Whether all particles fly alike: without fields, random motion and walls, and with one size.
+  [[nodiscard]] bool flies_freely() const;
   [[nodiscard]] bool has_parcels() const { return has(3); }
   [[nodiscard]] bool has_inlet() const;
+  /// Whether scene() takes D from an array: that of diffusivity(), or numbers at random.
+  [[nodiscard]] bool has_varying_diffusion() const { return has(28) && !collides(); }
+  [[nodiscard]] bool has_linear_diffusion() const { return has_varying_diffusion() && has(29); }
+  [[nodiscard]] double diffusivity(const Vec3& x) const;
+  [[nodiscard]] Vec3 diffusivity_gradient() const;
   /// Adds all parts. Those that find no place are left out, alike in all that are made so. `particles`: whether there are
   /// any; a checkpoint brings them.
   void fill(Simulation& s, bool particles) const;
@@ -43,10 +50,11 @@ class Plan {
   [[nodiscard]] WallResponse response() const;
   [[nodiscard]] std::vector<Vec3> field() const;
   [[nodiscard]] DeformationStep deformation() const;
+  void add_diffusivity(Scene& s) const;
   [[nodiscard]] StatisticsOptions statistics() const;
   [[nodiscard]] std::vector<Event> events() const;
   void add_body(Simulation& s) const;
-  void add_solid(Simulation& s) const;
+  void add_solid(Simulation& s, int number) const;
   void add_catheter(Simulation& s) const;
 
   const Case& case_;

@@ -8,6 +8,7 @@
 #include "dartcast/replay.hpp"
 #include "dartcast/spheres.hpp"
 #include "soak/guests.hpp"
+#include "soak/periodic.hpp"
 #include "soak/truth.hpp"
 #include "support/particle_checks.hpp"
 #include "support/report_words.hpp"
@@ -35,6 +36,7 @@ void note_report(const StepReport& report, Seen& seen) {
   if (!report.held.empty()) seen.note(Mark::held);
   if (report.counters.steps_split > 0) seen.note(Mark::slices);
   if (report.counters.unfinished > 0) seen.note(Mark::unfinished);
+  if (!report.contacts.crossings.empty()) seen.note(Mark::passage);
   for (const Contact& c : report.contacts.contacts) {
     if (c.wall_count > 1) seen.note(Mark::several_walls);
     if (c.earlier > 2) seen.note(Mark::many_contacts);
@@ -81,7 +83,9 @@ void for_each_first(const StepReport& report, std::size_t particles, Visit&& vis
 class Points : public Guest {
  public:
   Points(const Case& c, const SceneMesh& scene, Environment& environment)
-      : case_(c), crowd_(c, scene, environment, Crowd::points) {}
+      : case_(c), scene_(scene), crowd_(c, scene, environment, Crowd::points) {
+    if (is_periodic()) truth_ = std::make_unique<PeriodicTruth>(c, scene, environment);
+  }
 
   [[nodiscard]] std::string name() const override { return "points"; }
   Crowd& crowd() override { return crowd_; }
@@ -92,18 +96,27 @@ class Points : public Guest {
     const auto answers = crowd_.answers(step.number), in_rounds = crowd_.answers(step.number),
                alone = crowd_.answers(step.number), thrown = crowd_.answers(step.number);
     std::string wrong = throw_first(case_, step, crowd_, *thrown, seen, [&](const ContactCallback& f) {
+      const Crossings crossings(*this, environment, *thrown);
       environment.advance(crowd_.particles, targets, f, options());
     });
     if (!wrong.empty()) return wrong;
     const Particles before = crowd_.particles;
+    const auto crossings = std::make_unique<Crossings>(*this, environment, *answers);
     const StepReport report = environment.advance(crowd_.particles, targets, answers->one_by_one(), options());
     note_report(report, seen);
     wrong = check_report(report, crowd_.size());
     if (wrong.empty()) wrong = compare_with_traces(environment, before, targets, report, *alone);
     if (wrong.empty()) wrong = take_again(environment, step, before, targets, seen);
-    if (wrong.empty() && (alone->velocities != answers->velocities || alone->statuses != answers->statuses))
+    if (wrong.empty() && truth_)
+      wrong = truth_->check(
+          environment, crowd_,
+          {step.number, step.moved, step.valid, before, targets, report, *answers, crossings->crossed, options()});
+    // A trace calls nothing at crossings, so nobody turns the velocities.
+    const bool turns = case_.is(Knob::periodic, "turned");
+    if (wrong.empty() && ((!turns && alone->velocities != answers->velocities) || alone->statuses != answers->statuses))
       wrong = "traces have other velocities";
     if (wrong.empty() && case_[Knob::rounds] != 0) {
+      const Crossings again_crossed(*this, environment, *in_rounds);
       Particles again = before;
       const StepReport rounds = environment.advance_in_rounds(again, targets, in_rounds->in_rounds(), options());
       if (!test::same_bits(test::copy_of(crowd_.particles), again)) wrong = "rounds have other states";
@@ -111,7 +124,7 @@ class Points : public Guest {
       if (test::words_of(report.counters) != test::words_of(rounds.counters)) wrong = "rounds have other counts";
       if (in_rounds->velocities != answers->velocities) wrong = "rounds have other velocities";
     }
-    if (wrong.empty() && step.valid && !step.moved)
+    if (wrong.empty() && step.valid && !step.moved && !is_periodic())
       wrong = compare_with_walls(environment, before, targets, report, seen);
     if (wrong.empty() && !step.moved) wrong = check_energy(*answers);
     for (const ParticleStatus fate : answers->statuses)
@@ -122,6 +135,21 @@ class Points : public Guest {
   }
 
  private:
+  // Hears of crossings, in a mesh with pairs, as long as it lives.
+  struct Crossings {
+    Crossings(const Points& points, Environment& environment, Answers& answers)
+        : crossed(points.scene_, answers.velocities), heard(environment) {
+      if (points.is_periodic()) heard.set_crossing_callback(crossed.callback());
+    }
+    ~Crossings() { heard.set_crossing_callback({}); }
+    Crossings(const Crossings&) = delete;
+    Crossings& operator=(const Crossings&) = delete;
+
+    Crossed crossed;
+    Environment& heard;
+  };
+
+  [[nodiscard]] bool is_periodic() const { return case_[Knob::periodic] != 0; }
   [[nodiscard]] StepReplay record(const Environment& environment, const Step& step, const Particles& before,
                                   const std::vector<Vec3>& targets, std::size_t particle) const {
     const auto answers = crowd_.answers(step.number);
@@ -133,6 +161,7 @@ class Points : public Guest {
                          const std::vector<Vec3>& targets, Seen& seen) {
     if (before.size() == 0 || environment.complex().steiner_point_count() > 0) return "";
     const std::size_t i = random_for(case_, Use::throwing, step.number, 1).below(std::uint32_t(before.size()));
+    if (is_periodic()) return "";  // faces of pairs are walls in it
     const StepReplay recorded = record(environment, step, before, targets, i);
     ReplayResult result;
     try {
@@ -162,6 +191,7 @@ class Points : public Guest {
   std::string compare_with_traces(const Environment& environment, const Particles& before,
                                   const std::vector<Vec3>& targets, const StepReport& report, Answers& alone) {
     std::size_t next = 0;
+    auto crossing = report.contacts.crossings.begin();
     const auto& contacts = report.contacts.contacts;
     const ContactCallback respond = alone.one_by_one();
     for (std::size_t i = 0; i < before.size(); ++i) {
@@ -172,6 +202,12 @@ class Points : public Guest {
                           test::words_of(trace.contacts, c) == test::words_of(report.contacts, contacts[next]);
         if (!same) difference += ", another contact";
         ++next;
+      }
+      for (const PeriodicCrossing& c : trace.contacts.crossings) {
+        const bool same = crossing != report.contacts.crossings.end() && crossing->to == c.to &&
+                          test::bits(crossing->point) == test::bits(c.point) && crossing->time == c.time;
+        if (!same) difference += ", another passage";
+        ++crossing;
       }
       for (std::size_t k = 1; k < trace.crossings.size(); ++k)
         if (trace.crossings[k].time < trace.crossings[k - 1].time ||
@@ -209,8 +245,10 @@ class Points : public Guest {
   }
 
   const Case& case_;
+  const SceneMesh& scene_;
   Crowd crowd_;
-  std::optional<std::size_t> at_fault_;  // the particle whose step is wrong
+  std::unique_ptr<PeriodicTruth> truth_;  // null without pairs
+  std::optional<std::size_t> at_fault_;   // the particle whose step is wrong
 };
 
 // Steps of one particle alone, to compare with those of many.

@@ -20,6 +20,7 @@
 #include "dartcast/validity.hpp"
 #include "soak/guests.hpp"
 #include "soak/movers.hpp"
+#include "soak/periodic.hpp"
 #include "soak/ranks.hpp"
 #include "soak/scene.hpp"
 #include "soak/surface.hpp"
@@ -53,7 +54,10 @@ class Run {
         environment_(std::make_unique<Environment>(scene_.mesh, Threads{1U << c[Knob::threads]})),
         editor_(c, scene_),
         motion_(c, scene_) {
-    environment_->edit([](ComplexEdit&) {});  // makes what the first edit makes once
+    if (c[Knob::periodic] != 0)
+      partners_.emplace(scene_, environment_->map());
+    else
+      environment_->edit([](ComplexEdit&) {});  // makes what the first edit makes once
     guests_.push_back(make_points(c, scene_, *environment_));
     if (c[Knob::simultaneous] != 0) guests_.push_back(make_simultaneous(c, scene_, *environment_));
     if (c[Knob::spheres] != 0) guests_.push_back(make_spheres(c, scene_, *environment_));
@@ -111,7 +115,8 @@ class Run {
   }
 
   void keep_chambers() {
-    chambers_ = std::make_unique<Chambers>(environment_->map());
+    chambers_ = std::make_unique<Chambers>(environment_->map(),
+                                           [&](CellFace f) { return partners_ ? partners_->of(f) : CellFace{}; });
     for (const auto& guest : guests_) guest->crowd().keep_chambers(*chambers_);
   }
   void follow() {
@@ -192,6 +197,7 @@ class Run {
   Seen& seen_;
   SceneMesh scene_;
   std::unique_ptr<Environment> environment_;
+  std::optional<Partners> partners_;
   Editor editor_;
   Motion motion_;
   std::vector<std::unique_ptr<Guest>> guests_;
@@ -204,7 +210,8 @@ class Run {
 
 std::string run_case(const Case& c, Seen& seen) {
   try {
-    return Run(c, seen).run();
+    const Case all = admitted(c);
+    return Run(all, seen).run();
   } catch (const std::exception& e) {
     return fmt::format("threw: {}", e.what());
   }

@@ -16,6 +16,7 @@
 #include "dartcast/mesh_check.hpp"
 #include "dartcast/validity.hpp"
 #include "mesh/cell_types.hpp"
+#include "soak/periodic.hpp"
 #include "support/meshes.hpp"
 #include "support/patchwork.hpp"
 #include "support/random_edits.hpp"
@@ -149,7 +150,10 @@ std::function<void(ComplexEdit&)> single(const Environment& environment, test::E
 SceneMesh make_mesh(const Case& c) {
   Random random = random_for(c, Use::mesh);
   SceneMesh scene;
-  scene.mesh = make_cells(c, random);
+  if (c[Knob::periodic] != 0)
+    scene = make_periodic_mesh(c, random);
+  else
+    scene.mesh = make_cells(c, random);
   const std::string_view walls = c.name(Knob::walls);
   if (walls == "a few cells") block(scene.mesh, 12, random);
   if (walls == "many cells") block(scene.mesh, 3, random);
@@ -169,18 +173,23 @@ bool has_bent_sheets(const Case& c) {
          (c.is(Knob::walls, "baffles") || c.is(Knob::edit, "open faces") || c.is(Knob::edit, "all"));
 }
 
-Chambers::Chambers(const CombinatorialMap& map) {
+Chambers::Chambers(const CombinatorialMap& map, const std::function<CellFace(CellFace)>& partner) {
   std::uint32_t next = 0;
   std::vector<Cell> open;
   for (const Cell start : map.cells()) {
     if (!number_.emplace(start.value, next).second) continue;
     open.assign(1, start);
     while (!open.empty()) {
-      const CellView view = map.view(open.back());
+      const Cell at = open.back();
+      const CellView view = map.view(at);
       open.pop_back();
       for (std::uint16_t f = 0; f < view.shape().face_count(); ++f) {
-        const Cell other = view.neighbour(f);
-        const bool leads_on = other.valid() && map.is_free(other) == view.is_free() && !view.is_wall(f);
+        Cell other = view.neighbour(f);
+        bool leads_on = other.valid() && map.is_free(other) == view.is_free() && !view.is_wall(f);
+        if (view.is_free() && view.is_wall(f)) {
+          other = partner({at, f}).cell;
+          leads_on = other.valid();
+        }
         if (leads_on && number_.emplace(other.value, next).second) open.push_back(other);
       }
     }
@@ -266,13 +275,21 @@ std::vector<Vec3> Motion::next(const Environment& environment, std::uint64_t ste
   }
   Random random = random_for(case_, Use::motion, step);
   const std::string_view kind = case_.name(Knob::motion);
+  const bool periodic = case_[Knob::periodic] != 0;
+  if (periodic && kind != "infinite vertices") {
+    const bool strong = kind == "near inversion" || kind == "inversion and back";
+    if (strong) home_ = next;
+    return shaken_alike(case_, scene_, step + 1, strong ? random.uniform(0.3, 2.0) : 0.05);
+  }
   if (kind == "infinite vertices") {
     home_ = next;
     // The last two are in the exact range. Exact touches take long there.
     constexpr std::array<double, 6> far = {infinity, -infinity, 0x1.8p+300, 1e200, 0x1p+300, -1e90};
     const std::uint32_t kinds = case_.is(Knob::mover, "environment") ? 6 : 4;
     for (std::uint32_t i = 0; i < 1 + random.below(3); ++i) {
-      Vec3& v = next[random.below(static_cast<std::uint32_t>(next.size()))];
+      const std::uint32_t number = random.below(static_cast<std::uint32_t>(next.size()));
+      Vec3& v = next[number];
+      if (periodic && is_on_border(scene_, number)) continue;
       (random.below(2) == 0 ? v.x : v.y) = far[random.below(kinds)];
     }
     return next;

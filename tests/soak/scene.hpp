@@ -21,11 +21,34 @@ namespace dartcast::soak {
 enum class Use : std::uint64_t { mesh = 2, edit, motion, place, target, answer, mover, throwing, state };
 Random random_for(const Case& c, Use use, std::uint64_t step = 0, std::uint64_t id = 0);
 
+/// Quarter turns about the z axis, then a shift. It is exact on a lattice.
+struct Placing {
+  unsigned quarters = 0;  ///< counterclockwise, below 4
+  Vec3 shift;
+
+  [[nodiscard]] Vec3 vector(Vec3 v) const {
+    for (unsigned i = 0; i < quarters; ++i) v = {-v.y, v.x, v.z};
+    return v;
+  }
+  [[nodiscard]] Vec3 point(const Vec3& x) const { return vector(x) + shift; }
+  [[nodiscard]] Placing inverse() const {
+    const Placing back{(4 - quarters) % 4, {}};
+    return {back.quarters, -back.vector(shift)};
+  }
+  /// `b`, then `a`.
+  friend Placing operator*(const Placing& a, const Placing& b) {
+    return {(a.quarters + b.quarters) % 4, a.point(b.shift)};
+  }
+};
+
 /// A mesh and its box. `edge`: about that of a cell.
 struct SceneMesh {
   MeshData mesh;
   Vec3 low, high;
   double edge = 1.0;
+  Vec3 box;                    ///< with periodic pairs: the upper corner before points were shaken; the lower one is 0
+  std::vector<Vec3> lattice;   ///< all points, then
+  std::vector<Placing> pairs;  ///< the motions of MeshData::periodic, from a to b
 };
 SceneMesh make_mesh(const Case& c);
 
@@ -36,7 +59,8 @@ bool has_bent_sheets(const Case& c);
 /// The parts of the free cells that walls separate.
 class Chambers {
  public:
-  explicit Chambers(const CombinatorialMap& map);
+  /// `partner`: of a wall face that leads on; invalid: it does not.
+  Chambers(const CombinatorialMap& map, const std::function<CellFace(CellFace)>& partner);
   /// The number of a cell's chamber.
   [[nodiscard]] std::uint32_t of(Cell c) const { return number_.at(c.value); }
 

@@ -37,6 +37,47 @@ struct Impossible {
   std::vector<std::string_view> one, others;
   std::string_view why;
 };
+Impossible of_pairs() {
+  return {{"periodic: one axis", "periodic: all axes", "periodic: turned"},
+          {"mover: solids",
+           "mover: bodies",
+           "mover: catheter",
+           "edit: mark",
+           "edit: merge",
+           "edit: subdivide",
+           "edit: coarsen",
+           "edit: split",
+           "edit: plane",
+           "edit: carve",
+           "edit: open faces",
+           "edit: sew",
+           "edit: remesh",
+           "edit: rebuild",
+           "edit: all",
+           "simultaneous: on",
+           "spheres: on",
+           "surface: on",
+           "an edit",
+           "contact of a",
+           "a solid stuck",
+           "a catheter pushed",
+           "a sphere in a wall",
+           "two solids",
+           "a replay",
+           "mesh: patchwork",
+           "mesh: octahedra",
+           "mesh: slivers",
+           "mesh: vessel",
+           "mesh: maze",
+           "motion: turn",
+           "motion: twist",
+           "motion: wave",
+           "a cell of nine faces",
+           "a Steiner point",
+           "a simulation shared by cells",
+           "walls that were stopped"},
+          "scenes with pairs refuse these, or have other meshes and motions"};
+}
 const std::vector<Impossible>& impossible() {
   static const std::vector<Impossible> list = {
       {{"mesh: plane", "mesh: maze"},
@@ -44,7 +85,7 @@ const std::vector<Impossible>& impossible() {
         "contact of a", "contact with a face", "walls that were stopped"},
        "these are of space"},
       {{"mover: environment", "mover: solids", "mover: bodies", "mover: catheter"},
-       {"a field", "a simulation shared by cells", "an inlet", "statistics"},
+       {"a field", "a simulation shared by cells", "an inlet", "statistics", "a diffusivity"},
        "only a simulation has these"},
       {{"mover: environment"},
        {"a catheter pushed", "a solid stuck", "contact of a", "walls that were stopped"},
@@ -64,6 +105,12 @@ const std::vector<Impossible>& impossible() {
        "replays make these points anew; ranks refuse them"},
       {{"edit: none", "edit: rebuild"}, {"an edit refused", "a solid stuck"}, "nothing is edited"},
       {{"edit: none"}, {"an edit just made"}, "nothing is edited"},
+      of_pairs(),
+      {{"periodic: off"}, {"a passage through"}, "there are no pairs"},
+      {{"meets: off"}, {"two solids"}, "solids pass through each other"},
+      {{"mover: environment", "mover: bodies", "mover: catheter", "mesh: plane", "mesh: maze"},
+       {"two solids"},
+       "there are no solids"},
   };
   return list;
 }
@@ -107,6 +154,9 @@ std::string_view name_of(Mark e) {
     case Mark::statistics: return "statistics";
     case Mark::by_cells: return "a simulation shared by cells";
     case Mark::taken_again: return "a replay";
+    case Mark::passage: return "a passage through a periodic face";
+    case Mark::meeting: return "two solids meeting";
+    case Mark::varying_diffusion: return "a diffusivity that varies";
   }
   return {};
 }

@@ -41,9 +41,12 @@ enum class Mark : std::uint8_t {
   inlet,
   statistics,
   by_cells,
-  taken_again
+  taken_again,
+  passage,
+  meeting,
+  varying_diffusion
 };
-inline constexpr std::size_t mark_count = 26;
+inline constexpr std::size_t mark_count = 29;
 std::string_view name_of(Mark e);
 
 /// Plain numbers, so that processes can share them.

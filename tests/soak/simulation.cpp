@@ -44,16 +44,85 @@ class SimulationMover : public Mover {
       throw;
     }
     const SimulationStep& made = *done;
+    if (simulation_->steps() == 1) flown_ = simulation_->unwrapped();
     if (simulation_->steps() == (case_[Knob::steps] + 1) / 2) saved_ = simulation_->checkpoint();
     note(made, seen);
     std::string wrong = check(made);
+    if (wrong.empty() && plan_.flies_freely()) wrong = check_flight();
     if (wrong.empty() && step + 1 == case_[Knob::steps]) wrong = compare_with_twins(seen);
+    if (wrong.empty() && step + 1 == case_[Knob::steps] && plan_.has_varying_diffusion()) wrong = diffuse(seen);
     return wrong;
   }
   void edit(const std::function<void(ComplexEdit&)>& make) override { simulation_->edit(make); }
 
  private:
+  // All have gone the same way since the first step.
+  [[nodiscard]] std::string check_flight() const {
+    const std::vector<Vec3> now = simulation_->unwrapped();
+    for (std::size_t i = 1; i < now.size() && now.size() == flown_.size(); ++i) {
+      const Vec3 way = now[i] - flown_[i];
+      if (norm(way - (now[0] - flown_[0])) > 1e-11 * (1.0 + norm(way)))
+        return fmt::format("particle {} has flown another way than the first one", i);
+    }
+    return "";
+  }
+
+  // A scene whose D varies: with other threads, on ranks, from a checkpoint.
+  [[nodiscard]] std::string diffuse(Seen& seen) const {
+    seen.note(Mark::varying_diffusion);
+    const Scene scene = plan_.scene();
+    const auto last = [&](Simulation& s) {
+      while (s.steps() < 6) s.step();
+      return state_of(s);
+    };
+    Simulation one(scene, Threads{1});
+    while (one.steps() < 3) one.step();
+    const SimulationCheckpoint saved = one.checkpoint();
+    const std::string expected = last(one);
+    std::string wrong = test::check_states(one.environment(), one.particles());
+    Simulation threaded(scene, Threads{3});
+    if (wrong.empty() && last(threaded) != expected) wrong = "with other threads a D that varies leads elsewhere";
+    Simulation rest(scene, saved);
+    if (wrong.empty() && last(rest) != expected) wrong = "from a checkpoint a D that varies leads elsewhere";
+    if (wrong.empty() && plan_.has_linear_diffusion() && case_[Knob::motion] == 0) wrong = compare_ways(scene);
+    if (!wrong.empty() || case_[Knob::ranks] == 0) return wrong;
+    test::on_ranks(case_[Knob::ranks] + 1, [&](Ranks& ranks) {
+      Simulation own(scene, Threads{1}, &ranks);
+      const std::string shared = last(own);
+      if (ranks.rank() == 0 && shared != expected) wrong = "on ranks a D that varies leads elsewhere";
+    });
+    return wrong;
+  }
+
+  // The first step with a linear D, beside those with one number and with none: the random way is in proportion to the
+  // root of D, and there is a drift.
+  [[nodiscard]] std::string compare_ways(const Scene& varying) const {
+    Scene scene = varying;
+    scene.motion.diffusivity.clear();
+    Simulation none(scene, Threads{1}), all(varying, Threads{1});
+    scene.motion.diffusion = 0.02 * norm(mesh_.points.front() - mesh_.points.back());
+    Simulation number(scene, Threads{1});
+    std::vector<bool> other(none.particles().size());
+    const std::vector<Vec3> from = test::positions_of(none.particles());
+    for (Simulation* s : {&none, &number, &all}) {
+      const SimulationStep& made = s->step();
+      for (const Contact& c : made.contacts())
+        if (c.particle < other.size()) other[c.particle] = true;
+      if (!made.left.empty() || s->ids().size() < other.size()) return "";
+    }
+    for (std::size_t i = 0; i < other.size(); ++i) {
+      if (other[i] || none.ids()[i] != all.ids()[i] || none.ids()[i] != number.ids()[i]) continue;
+      const auto end = [&](const Simulation& s) { return s.unwrapped()[i]; };
+      const Vec3 way = (end(number) - end(none)) * std::sqrt(plan_.diffusivity(from[i]) / scene.motion.diffusion);
+      const Vec3 expected = end(none) + way + plan_.diffusivity_gradient() * scene.motion.dt;
+      if (norm(end(all) - expected) > 1e-9 * norm(mesh_.points.front() - mesh_.points.back()))
+        return fmt::format("particle {} diffuses {:g} off", i, norm(end(all) - expected));
+    }
+    return "";
+  }
+
   void note(const SimulationStep& made, Seen& seen) const {
+    if (!made.report.contacts.crossings.empty()) seen.note(Mark::passage);
     if (!made.left.empty()) seen.note(Mark::left);
     if (!made.overlaps.empty()) seen.note(Mark::overlap);
     if (simulation_->solids() != nullptr && !simulation_->solids_step().contacts.empty())
@@ -114,7 +183,7 @@ class SimulationMover : public Mover {
 
   // The same scene by one process, and by ranks with some of the cells each.
   [[nodiscard]] std::string compare_by_cells(Seen& seen) const {
-    if (environment_.complex().steiner_point_count() > 0) return "";  // ranks refuse these
+    if (environment_.complex().steiner_point_count() > 0 || !mesh_.periodic.empty()) return "";  // ranks refuse these
     const unsigned count = case_[Knob::ranks] + 1;
     if (mesh_.cell_count() < count) return "";
     seen.note(Mark::by_cells);
@@ -167,6 +236,7 @@ class SimulationMover : public Mover {
   Environment& environment_;
   std::unique_ptr<Simulation> simulation_;
   std::optional<SimulationCheckpoint> saved_;
+  std::vector<Vec3> flown_;  // the unwrapped places after the first step
   bool ended_ = false;
 };
 
