@@ -192,7 +192,7 @@ std::string PeriodicTruth::Repeated::check(const Environment& environment, const
     const std::size_t i = starts[k].particle;
     const Way& way = ways[k];
     if (way.graze) continue;
-    const double slack = (asks ? 1e-6 : 1e-9) * (1.0 + norm(starts[k].to - starts[k].from));
+    const double slack = (asks ? 1e-3 : 1e-9) * (1.0 + norm(starts[k].to - starts[k].from));
     const Vec3 end = step.crossed.home(i).point(crowd.particles[i].position);
     const Vec3 velocity = step.crossed.home(i).vector(step.answers.velocities[i]);
     // How often a way along walls touches them again depends on rounding: the first contact and the end count.
