@@ -368,8 +368,7 @@ class Simulation {
   /// The sums by cell of all ranks; none without StatisticsOptions::cells. Its steps are `dt / substeps` long. Cost: linear
   /// in the cells. Collective.
   [[nodiscard]] std::optional<CellTally> cell_tally() const;
-  /// StatisticsOptions::cells as arrays, each with values for every cell, in the order of CombinatorialMap::cells(). With
-  /// classes of NAME there is one more for each class k, with the ending _NAME_k.
+  /// StatisticsOptions::cells as arrays of all cells, in the order of CombinatorialMap::cells(); for class k NAME_k.
   [[nodiscard]] std::vector<DataArray> cell_arrays(const CellTally& tally) const;
   [[nodiscard]] double seconds_solids() const;  ///< steps of bodies, catheters and solids so far
   [[nodiscard]] const EventLog& event_log() const;
