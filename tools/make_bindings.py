@@ -25,7 +25,7 @@ BY_HAND = set("""
     HeldParticle Id ImplicitSimplex LawParticles LawResult LawSamples LeftParticle MeshData MeshFile MeshPart OrphanedParticle Patch PathPoint
     PeriodicCrossing PlaneCrossing PlanePassage RayCells RayHit ReplayResult SimplexId SolidAudit SolidCheckpoint SolidContact
     SolidMeeting SolidMesh SolidPlacement SolidStep SphereOverlap SphereReport Stars Statistics SteinerPoints StepReplay
-    StepReport StoppedParticle Subdivided Subdivision SurfaceReport SurfaceTrace Threads TouchedFaces Trace
+    StepReport StoppedParticle Subdivided Subdivision SurfaceReport SurfaceTrace TalliedParticles Threads TouchedFaces Trace
     Transaction UpdateReport Vec3 VelocityGradient
     """.split())
 # Members that are arrays or objects of Python, which python/src binds.

@@ -100,7 +100,7 @@ void bind_sums(TallyClass& c) {
         require_amount(t, which);
         return t.tally.whole_amount(which);
       },
-      py::arg("which"), about("CellTally::whole_amount"));
+      py::arg("which"), "The sum of an amount over all particles.");
   const auto whole = [&](const char* name, auto get) {
     c.def(
         name,
@@ -178,21 +178,21 @@ void bind(py::module_& m) {
   EnvironmentClass e = m.attr("Environment");
   e.def(
       "set_tally",
-      [](const EnvironmentHandle& h, const std::shared_ptr<TallyHandle>& t, std::vector<std::uint64_t> numbers,
-         std::vector<std::uint32_t> classes, std::vector<double> amounts) {
+      [](const EnvironmentHandle& h, const std::shared_ptr<TallyHandle>& t,
+         std::optional<std::vector<std::uint64_t>> numbers, std::optional<std::vector<std::uint32_t>> classes,
+         std::optional<std::vector<double>> amounts) {
         const Use in_use = h.use();
         Environment& environment = h.changeable("ask for StatisticsOptions.cells");
         if (!t) return environment.set_tally(nullptr);
         if (t->environment->environment != &environment)
           throw InvalidArgument("set_tally: the tally is of another environment: make one of this");
-        t->numbers = std::move(numbers);
-        t->classes = std::move(classes);
-        t->amounts = std::move(amounts);
+        t->numbers = std::move(numbers).value_or(std::vector<std::uint64_t>());
+        t->classes = std::move(classes).value_or(std::vector<std::uint32_t>());
+        t->amounts = std::move(amounts).value_or(std::vector<double>());
         environment.set_tally(&t->tally, {t->numbers, t->classes, t->amounts});
       },
-      py::arg("tally"), py::arg("numbers") = std::vector<std::uint64_t>(),
-      py::arg("classes") = std::vector<std::uint32_t>(), py::arg("amounts") = std::vector<double>(),
-      py::keep_alive<1, 2>(),
+      py::arg("tally"), py::arg("numbers") = py::none(), py::arg("classes") = py::none(),
+      py::arg("amounts") = py::none(), py::keep_alive<1, 2>(),
       about("Environment::set_tally",
             "numbers, classes: one for each particle, or none. amounts: those of one particle after the other."));
 }

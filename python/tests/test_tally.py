@@ -61,7 +61,7 @@ def test_drag_gives_its_momentum_to_cells():
     simulation = dartcast.Simulation(env, options)
     simulation.set_statistics(dartcast.StatisticsOptions(
         cells=["momentum", "energy", "user:w"], cells_every=3, classes_of="diameter", class_bounds=[2e-3]))
-    material = dartcast.Material(1e-3, 1000.0, 0.0)
+    material = dartcast.records.Material(1e-3, 1000.0, 0.0)
     simulation.add([[0.2, 0.5, 0.5], [0.3, 0.4, 0.6]], [0.5, 0.0, 0.0], user_data=[3.0], material=material)
     for _ in range(3):
         simulation.step()
