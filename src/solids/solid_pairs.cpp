@@ -171,7 +171,7 @@ void SolidSet::Impl::stop_at_solids(Solids& squeezed, const VertexMotion& walls)
   }
 }
 
-// By solid, then by the other; each pair once, as it was found first.
+// By solid, then by the other; each pair once, as it was found first. Cells may have carried solids that are stuck.
 void SolidSet::Impl::report_meetings() {
   for (const SolidConstraint& c : meetings) {
     const ElementTouch& t = c.touch;
@@ -184,12 +184,12 @@ void SolidSet::Impl::report_meetings() {
     m.other_weights = c.wall_weights;
     for (unsigned i = 0; i < t.count; ++i) {
       m.vertices[i] = t.vertices[i] - first_vertex[m.solid];
-      m.point += reached[t.vertices[i]] * c.weights[i];
+      m.point += positions[t.vertices[i]] * c.weights[i];
     }
     for (unsigned i = 0; i < t.wall_count; ++i) {
       const std::uint32_t v = t.wall.vertex[t.corners[i]].value;
       m.other_vertices[i] = v - first_vertex[m.other];
-      m.other_point += reached[v] * c.wall_weights[i];
+      m.other_point += positions[v] * c.wall_weights[i];
     }
     m.time_of_impact = (c.slice + t.time) / way.slices;
     m.normal = c.normal;

@@ -253,6 +253,7 @@ void SolidSet::Impl::after_move() {
     move_all_but_stuck();
   }
   for (std::size_t v = 0; v < positions.size(); ++v) positions[v] = particles[v].position;
+  report_meetings();
 }
 
 // Contacts that press at the end, and those that stopped a solid; by solid, then by time, each pair once.
@@ -280,7 +281,6 @@ void SolidSet::Impl::report() {
   for (const SolidConstraint& c : first_touches) last.contacts.push_back(describe(c, solid_of(c.touch.vertices[0])));
   std::sort(last.held.begin(), last.held.end());
   sort_and_join(last.contacts);
-  report_meetings();
   last.pairs = pairs_so_far() - pairs_before;
 }
 
@@ -290,6 +290,7 @@ void SolidSet::Impl::advance(SolidWay given, const SolidStepOptions& options) {
   plan({rest, rest});
   report();
   commit_at_rest();
+  report_meetings();
 }
 
 void SolidSet::Impl::prepare(SolidWay given, const SolidStepOptions& options) {

@@ -153,7 +153,7 @@ class SolidsMover : public Mover {
     if (!made.meetings.empty()) seen.note(Mark::meeting);
     if (!solids_.set().stuck().empty()) seen.note(Mark::stuck);
     was_stuck_ = was_stuck_ || !solids_.set().stuck().empty();  // cells may carry it through others
-    wrong = was_stuck_ ? "" : solids_.check(made);
+    wrong = solids_.check(made);
     if (wrong.empty() && !was_stuck_) wrong = solids_.pierced();
     if (wrong.empty()) wrong = check_audit(case_, environment_, solids_.set().audit());
     if (!wrong.empty()) return wrong;
