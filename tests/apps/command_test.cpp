@@ -302,7 +302,7 @@ TEST_F(Command, InfoListsPeriodicPairs) {
 // A case's cyclic patches are a pair unless the scene makes walls of them, or names another pair.
 TEST_F(Command, PairsOfTheMeshsFile) {
   const MeshData box = generate_box({.cells = {2, 2, 1}, .size = Vec3{1.0, 1.0, 1.0}});
-  FoamWriter(folder / "case", {}).write(foam_mesh(box, {{"xmin", "cyclic xmax"}, {"xmax", "cyclic xmin"}}));
+  test::FoamWriter(folder / "case", {}).write(test::foam_mesh(box, {{"xmin", "cyclic xmax"}, {"xmax", "cyclic xmin"}}));
   const std::string line = "periodic: xmin leads to xmax, 2 faces, moved by (2, 0, 0)\n";
   EXPECT_NE(run("check case").out.find("periodic: xmin leads to xmax, moved by (1, 0, 0)\n"), std::string::npos);
   const std::string mesh = "[environment]\nmesh = 'case'\nscale = 2.0\n";
