@@ -121,10 +121,11 @@ TEST(PeriodicSimulation, WhatDoesNotKnowPairsIsRefused) {
                        }),
                        {words.c_str()});
   };
-  refused([](Scene& s) { s.collisions.emplace(); }, "spheres that collide cannot be in a scene with periodic pairs");
+  refused([](Scene& s) { s.collisions.emplace(); },
+          "spheres that collide: they cannot be in a scene with periodic pairs");
   refused([](Scene& s) { s.particles[0].radius = 0.1; }, "radius is 0.1: in a scene with periodic pairs");
   refused([](Scene& s) { s.motion.wall_motion = WallMotion::simultaneous; },
-          "move at the same time as the walls cannot be");
+          "move at the same time as the walls: they cannot be");
   refused([](Scene& s) { s.environment.periodic[1].translate = {}; }, "no corner of \"ymax\" is its partner");
   refused([](Scene& s) { s.environment.periodic[1].a = "top"; }, "top");
   refused(
