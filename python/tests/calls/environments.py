@@ -59,7 +59,6 @@ def of_tallies() -> Calls:
         "CellTally.path_length": tally.path_length, "CellTally.age": tally.age, "CellTally.adds_up": tally.adds_up,
         "CellTally.take_back": lambda: tally.take_back(cell, 0.0), "CellTally.deposit": lambda: tally.deposit(cell),
         "CellTally.amount": lambda: tally.amount(0), "CellTally.amount: refused": refused(lambda: tally.amount(1)),
-        "CellTally.classes": lambda: tally.classes, "CellTally.amounts": lambda: tally.amounts,
         "CellTally.whole_amount": lambda: tally.whole_amount(0),
         "CellTally.whole_amount: refused": refused(lambda: tally.whole_amount(1)),
         "CellTally.take_back_amounts": lambda: tally.take_back_amounts(cell, [0.0]),

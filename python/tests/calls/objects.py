@@ -76,7 +76,7 @@ def of_simulations() -> dict[str, object]:
     simulation.add_body(scenes.BODY, dc.BodyOptions(mass=2.0))
     simulation.step()
     return {"Simulation": simulation, "SimulationCheckpoint": simulation.checkpoint(),
-            "Statistics": simulation.statistics}
+            "Statistics": simulation.statistics, "CellTally": dc.CellTally(scenes.environment())}
 
 
 def of_parts() -> dict[str, object]:
