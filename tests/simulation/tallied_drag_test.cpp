@@ -90,7 +90,6 @@ TEST(TalliedDrag, BalancesMomentumAndEnergy) {
     const double mass = 60.0 * mass_of(s, 0);
     const Vec3 momentum = momentum_of(s);
     const double energy = energy_of(s);
-    Vec3 turned;  // by the magnetic field, which the momentum of drag does not hold
     for (int step = 0; step < 20; ++step) s.step();
     const std::vector<DataArray> arrays = arrays_of(s);
     EXPECT_TRUE(s.cell_tally()->adds_up());
