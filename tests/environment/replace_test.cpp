@@ -7,15 +7,14 @@
 #include <vector>
 
 #include "base/random.hpp"
-#include "dartcast/audit.hpp"
 #include "dartcast/cell_tally.hpp"
 #include "dartcast/complex_edit.hpp"
 #include "dartcast/environment.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "mesh/cell_types.hpp"
+#include "support/expectations.hpp"
 #include "support/mixed_mesh.hpp"
-#include "support/particle_checks.hpp"
 
 namespace dartcast::replace_test {
 
@@ -110,12 +109,6 @@ std::vector<Vec3> targets_of(const Particles& particles, Random& random) {
   return targets;
 }
 
-void expect_audited(const Environment& environment, const Particles& particles) {
-  const Audit found = audit(environment.complex(), particles);
-  EXPECT_EQ(found.failed, 0U) << found.first;
-  EXPECT_EQ(found.checked, particles.size());
-}
-
 TEST(Replace, TheSameSpaceKeepsEveryPlaceAndSide) {
   Random random(7);
   const Blocked blocked = blocked_cubes(random);
@@ -140,7 +133,7 @@ TEST(Replace, TheSameSpaceKeepsEveryPlaceAndSide) {
     ASSERT_EQ(particles.size(), count);
     for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(particles[i].position, before[i].position) << i;
     EXPECT_EQ(sides(environment, particles), left);
-    expect_audited(environment, particles);
+    test::expect_audited(environment.complex(), particles);
   }
   EXPECT_GT(touching, count);
 }
@@ -160,7 +153,7 @@ TEST(Replace, OthersGoToTheNearestFreePlaceOrLeave) {
     Particles others = particles;
     const UpdateReport report = environment.update_after_edit(particles);
     ASSERT_EQ(particles.size(), before.size());
-    expect_audited(environment, particles);
+    test::expect_audited(environment.complex(), particles);
     for (const OrphanedParticle& p : report.orphaned) {
       const double least = distance_to_free(before[p.particle].position, blocked);
       EXPECT_NEAR(p.distance, least, 1e-12);
@@ -174,7 +167,7 @@ TEST(Replace, OthersGoToTheNearestFreePlaceOrLeave) {
     EXPECT_EQ(report.orphaned.size(), without);
     environment.update_after_edit(others, OrphanPolicy::absorb);
     EXPECT_EQ(others.size(), before.size() - without);
-    expect_audited(environment, others);
+    test::expect_audited(environment.complex(), others);
   }
 }
 
@@ -198,7 +191,7 @@ TEST(Replace, MovesAndStepsGoOn) {
     environment.update_after_edit(particles);
     if (!moves_first) move();
     environment.advance(particles, targets_of(particles, random));
-    expect_audited(environment, particles);
+    test::expect_audited(environment.complex(), particles);
     EXPECT_EQ(sides(environment, particles), left);
     std::vector<Vec3> back(environment.positions().begin(), environment.positions().end());
     for (Vec3& x : back) x = {x.x, std::round(x.y - 0.03 * x.z), x.z};
