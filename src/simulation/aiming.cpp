@@ -21,7 +21,6 @@ namespace dartcast {
 namespace {
 
 constexpr std::size_t aim_grain = 512;  // a multiple of the lanes of a vector
-constexpr std::size_t tracer_grain = 256;
 
 }  // namespace
 
@@ -220,7 +219,8 @@ void Aiming::aim_at_field(const Segment& segment) {
   const detail::FlowScene scene = in_fours ? flow_scene(segment) : detail::FlowScene{};
   parallel_for(targets_.size(), aim_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
     std::array<std::uint8_t, aim_grain / 4> aimed{};
-    if (in_fours) aim_in_flow(segment, scene, begin, end, aimed);
+    if (in_fours)
+      detail::aim_in_flow(scene, of_segment(segment, begin, end, std::span(aimed).first((end - begin) / 4)));
     if (flies) return aim_in_flight(segment, begin, end);
     for (std::size_t i = begin; i < end; ++i) {
       if ((aimed[(i - begin) / 4] >> (i - begin) % 4 & 1U) == 0) aim_one(segment, i);
@@ -266,25 +266,37 @@ detail::FlowScene Aiming::flow_scene(const Segment& segment) const {
   return scene;
 }
 
-void Aiming::aim_in_flow(const Segment& segment, const detail::FlowScene& scene, std::size_t begin, std::size_t end,
-                         std::span<std::uint8_t> aimed) {
+detail::FlowParticles Aiming::of_segment(const Segment& segment, std::size_t begin, std::size_t end,
+                                         std::span<std::uint8_t> aimed) {
   const std::size_t size = end - begin;
   const Particles& particles = segment.particles;
-  detail::aim_in_flow(scene, {particles.states().subspan(begin, size), particles.vertex_numbers().subspan(begin, size),
-                              segment.statuses.subspan(begin, size), segment.velocities.subspan(begin, size),
-                              std::span(targets_).subspan(begin, size), aimed.first(size / 4)});
+  return {particles.states().subspan(begin, size),  particles.vertex_numbers().subspan(begin, size),
+          segment.statuses.subspan(begin, size),    segment.velocities.subspan(begin, size),
+          std::span(targets_).subspan(begin, size), aimed};
 }
 
 void Aiming::aim_by_runge_kutta(const Segment& segment) {
-  const RungeKuttaStep step = {environment_.complex(), *field_, segment.dt, segment.moving};
-  parallel_for(targets_.size(), tracer_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
+  if (segment.moving) find_halfway();
+  const RungeKuttaStep step = {environment_.complex(), *field_, segment.dt, segment.moving, halfway_};
+  parallel_for(targets_.size(), aim_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
+    runge_kutta_velocities(step, of_segment(segment, begin, end, {}));
     for (std::size_t i = begin; i < end; ++i) {
       const ParticleState& s = segment.particles[i];
-      const bool follows = segment.statuses[i] == ParticleStatus::alive && !s.held;
-      const Aim a = follows ? Aim{runge_kutta_velocity(step, s), {}} : aim_at(segment, i);
-      segment.velocities[i] = a.velocity;
-      targets_[i] = flushed(follows ? s.position + a.velocity * segment.dt : a.target);
+      if (s.held || segment.statuses[i] != ParticleStatus::alive)
+        aim_one(segment, i);
+      else
+        targets_[i] = flushed(s.position + segment.velocities[i] * segment.dt);
     }
+  });
+}
+
+// The same doubles as those of Between in tracking/space.hpp.
+void Aiming::find_halfway() {
+  const std::span<const Vec3> from = environment_.complex().previous_positions();
+  const std::span<const Vec3> to = environment_.complex().positions();
+  halfway_.resize(to.size());
+  parallel_for(to.size(), aim_grain, environment_.threads(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) halfway_[v] = from[v] + (to[v] - from[v]) * 0.5;
   });
 }
 

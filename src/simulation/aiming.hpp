@@ -88,8 +88,9 @@ class Aiming {
   [[nodiscard]] ForceStep::Fields fields() const;
   void aim_one(const Segment& segment, std::size_t i);
   void aim_in_flight(const Segment& segment, std::size_t begin, std::size_t end);
-  void aim_in_flow(const Segment& segment, const detail::FlowScene& scene, std::size_t begin, std::size_t end,
-                   std::span<std::uint8_t> aimed);
+  void find_halfway();
+  [[nodiscard]] detail::FlowParticles of_segment(const Segment& segment, std::size_t begin, std::size_t end,
+                                                 std::span<std::uint8_t> aimed);
   [[nodiscard]] detail::FlowScene flow_scene(const Segment& segment) const;
   [[nodiscard]] Aim aim_at(const Segment& segment, std::size_t i) const;
   [[nodiscard]] Vec3 accelerated(const Segment& segment, const Vec3& v, const Vec3& flow, const Vec3& force) const;
@@ -107,6 +108,7 @@ class Aiming {
   double begin_ = 0.0;  // of the segment, s
   std::uint64_t moment_ = 0;
   std::vector<Vec3> targets_;
+  std::vector<Vec3> halfway_;  // vertices in the middle of a move
   bool counts_losses_ = false;
   std::vector<DragLoss> losses_;
 };

@@ -24,9 +24,10 @@ struct FlowScene {
   bool drags = false;     ///< otherwise a particle has the velocity of the flow
   double lost = 0.0;      ///< share of the velocity relative to the flow that drag takes in this time
   Vec3 terminal = {};     ///< velocity relative to the flow that gravity and drag lead to
+  const Vec3* at = nullptr;  ///< positions of vertices where find_flow() is to find the particles
 };
 
-/// Consecutive particles; all spans have the same size, and that of `aimed` is a quarter of it, rounded down.
+/// Consecutive particles. All spans have the same size, but that of `aimed` is a quarter of it, rounded down.
 struct FlowParticles {
   std::span<const ParticleState> states;
   std::span<const VertexNumbers> vertices;
@@ -41,11 +42,16 @@ struct FlowParticles {
 /// not alive, or its simplex is a sliver. Fewer than four at the end are left to the caller, too.
 void aim_in_flow(const FlowScene& scene, const FlowParticles& particles, InstructionSet set = best_instruction_set());
 
+/// The same for the velocity of the flow alone, by scene.at. It reads neither velocities nor targets.
+void find_flow(const FlowScene& scene, const FlowParticles& particles, InstructionSet set = best_instruction_set());
+
 namespace portable {
 void aim_in_flow(const FlowScene& scene, const FlowParticles& particles);
+void find_flow(const FlowScene& scene, const FlowParticles& particles);
 }  // namespace portable
 namespace avx2 {
 void aim_in_flow(const FlowScene& scene, const FlowParticles& particles);
+void find_flow(const FlowScene& scene, const FlowParticles& particles);
 }  // namespace avx2
 
 }  // namespace dartcast::detail

@@ -24,6 +24,9 @@ class FlowKernel {
   void aim_all() const {
     for (std::size_t block = 0; block < particles_.aimed.size(); ++block) particles_.aimed[block] = aim(4 * block);
   }
+  void find_all() const {
+    for (std::size_t block = 0; block < particles_.aimed.size(); ++block) particles_.aimed[block] = find(4 * block);
+  }
 
  private:
   [[nodiscard]] Corners4 corners(const Vec3* positions, std::size_t i) const {
@@ -71,6 +74,28 @@ class FlowKernel {
     return static_cast<std::uint8_t>(lanes);
   }
 
+  [[nodiscard]] std::uint8_t find(std::size_t i) const {
+    const ParticleState* s = &particles_.states[i];
+    const Vec3x4 x = load_vec3x4(s[0].position, s[1].position, s[2].position, s[3].position);
+    const Corners4 here = corners(scene_.at, i);
+    const BatchDeterminants d(here, x);
+    const unsigned lanes = free_lanes(i) & lanes_set(d.proves_coordinates());
+    if (lanes == 0) return 0;
+    const Weights4 w = weights_of(d);
+    Vec3x4 u = values(i, w);
+    if (scene_.rest != nullptr) {
+      u = mapped(corners(scene_.rest, i), here, u);
+      if (scene_.moving) {
+        const Vec3x4 mesh = combine(corners(scene_.now, i), w) - combine(corners(scene_.before, i), w);
+        u = u + mesh * splat(scene_.per_move);
+      }
+    }
+    for (unsigned k = 0; k < 4; ++k) {
+      if ((lanes >> k & 1U) != 0) particles_.velocities[i + k] = {u.x[k], u.y[k], u.z[k]};
+    }
+    return static_cast<std::uint8_t>(lanes);
+  }
+
   [[nodiscard]] Vec3x4 accelerated(const Vec3x4& v, const Vec3x4& flow) const {
     if (!scene_.drags) return flow;
     return v + (flow + splat(scene_.terminal) - v) * splat(scene_.lost);
@@ -91,6 +116,7 @@ class FlowKernel {
 }  // namespace
 
 void aim_in_flow(const FlowScene& scene, const FlowParticles& particles) { FlowKernel(scene, particles).aim_all(); }
+void find_flow(const FlowScene& scene, const FlowParticles& particles) { FlowKernel(scene, particles).find_all(); }
 
 }  // namespace dartcast::detail::DARTCAST_SIMD
 DARTCAST_END_KERNEL

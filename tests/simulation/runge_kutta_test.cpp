@@ -4,15 +4,20 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <numbers>
+#include <optional>
 #include <vector>
 
+#include "base/random.hpp"
 #include "dartcast/error.hpp"
 #include "dartcast/generators.hpp"
 #include "dartcast/simulation.hpp"
 #include "support/expectations.hpp"
 #include "support/meshes.hpp"
+#include "support/patchwork.hpp"
+#include "support/periodic_meshes.hpp"
 
 namespace dartcast::runge_kutta_test {
 
@@ -190,6 +195,95 @@ TEST(RungeKutta, InSpaceAUniformFlowGoesStraightThroughAMeshThatTurns) {
   simulation.add({{4, 4, 5}}, {});
   for (int i = 0; i < 50; ++i) simulation.step();
   expect_near(simulation.particles()[0].position, {4.5, 5, 5}, 1e-12);
+}
+
+// Particles of one mesh, half of them and of the field's values on a lattice, and what they do in a step.
+class Crowd {
+ public:
+  Crowd(MeshData mesh, FieldPlace place, FieldFrame frame, Random& random)
+      : random_(random), place_(place), planar_(mesh.dimension() == 2), mesh_(std::move(mesh)), environment_(mesh_) {
+    const std::size_t values = place == FieldPlace::points ? mesh_.points.size() : mesh_.cell_count();
+    std::vector<std::vector<Vec3>> samples(3);
+    for (std::vector<Vec3>& sample : samples) {
+      for (std::size_t i = 0; i < values; ++i) sample.push_back(vector(-2, 2));
+    }
+    field_.emplace(environment_.complex(), field_samples({0.0, 0.5, 1.0}, std::move(samples), place), frame);
+    std::vector<Vec3> points;
+    for (int i = 0; i < 303; ++i) points.push_back(vector(0, 4));
+    environment_.add(particles_, points);
+  }
+
+  // `shift`: of vertices, at most; the largest ones invert cells.
+  void expect_same_bits(double dt, double shift) {
+    if (shift > 0.0) {
+      std::vector<Vec3> moved(environment_.positions().begin(), environment_.positions().end());
+      for (Vec3& x : moved) x += vector(-1, 1) * shift;
+      environment_.move(moved);
+    }
+    field_->set_times(std::vector<double>{0.0, 0.5, 1.0}, environment_.complex());
+    const CellComplex& complex = environment_.complex();
+    std::vector<Vec3> halfway;
+    for (std::size_t v = 0; v < complex.positions().size(); ++v) {
+      const Vec3 from = complex.previous_positions()[v];
+      halfway.push_back(from + (complex.positions()[v] - from) * 0.5);
+    }
+    const RungeKuttaStep step = {complex, *field_, dt, shift > 0.0, halfway};
+    std::vector<ParticleStatus> statuses(particles_.size());
+    for (ParticleStatus& s : statuses) s = random_.below(10) == 0 ? ParticleStatus::stuck : ParticleStatus::alive;
+    const Vec3 untouched = {7, 7, 7};
+    std::vector<Vec3> velocities(particles_.size(), untouched);
+    runge_kutta_velocities(step, {particles_.states(), particles_.vertex_numbers(), statuses, velocities, {}, {}});
+    for (std::size_t i = 0; i < particles_.size(); ++i) {
+      const bool follows = !particles_[i].held && statuses[i] == ParticleStatus::alive;
+      const Vec3 alone = follows ? runge_kutta_velocity(step, particles_[i]) : untouched;
+      ASSERT_EQ(std::memcmp(&velocities[i], &alone, sizeof alone), 0) << i << ", " << dt << ", " << shift;
+    }
+  }
+
+ private:
+  Vec3 vector(double low, double high) {
+    const bool lattice = random_.below(2) == 0;
+    const auto number = [&] {
+      return lattice ? low + 0.5 * random_.below(std::uint32_t(2 * (high - low))) : random_.uniform(low, high);
+    };
+    const Vec3 v = {number(), number(), number()};
+    return planar_ ? Vec3{v.x, v.y, 0.0} : v;
+  }
+
+  Random& random_;
+  FieldPlace place_;
+  bool planar_;
+  MeshData mesh_;
+  Environment environment_;
+  Particles particles_;
+  std::optional<VectorField> field_;
+};
+
+TEST(RungeKutta, ManyAtOnceHaveTheBitsOfEach) {
+  Random random(4);
+  RectangleOptions rectangle;
+  rectangle.cells = {4, 4};
+  rectangle.size = {4, 4};
+  BoxOptions box;
+  box.cells = {4, 4, 4};
+  box.size = {4, 4, 4};
+  const std::vector<MeshData> meshes = {generate_rectangle(rectangle),
+                                        test::cubes(4),
+                                        test::cubes(4, CellType::tetrahedron, 0.2),
+                                        test::cubes(4, CellType::hexahedron, 0.1, 0.6),
+                                        test::patchwork({4, 4, 4}, random),
+                                        test::periodic_box(box, 3)};
+  for (const MeshData& mesh : meshes) {
+    for (const FieldPlace place : {FieldPlace::points, FieldPlace::cells}) {
+      for (const FieldFrame frame : {FieldFrame::space, FieldFrame::mesh}) {
+        for (const double dt : {1e-6, 0.125, 1.0, 100.0}) {
+          Crowd(mesh, place, frame, random).expect_same_bits(dt, 0.0);
+          if (!mesh.periodic.empty()) continue;
+          for (const double shift : {1e-9, 0.1, 0.6}) Crowd(mesh, place, frame, random).expect_same_bits(dt, shift);
+        }
+      }
+    }
+  }
 }
 
 TEST(RungeKutta, RefusesWhatItCannotFollow) {

@@ -32,8 +32,11 @@ struct BatchScene {
   bool moved = false;         ///< as for Stepper
   bool caches_match = false;  ///< the caches are of these states, before the move
   StepOptions options;
-  bool walls_match = true;  ///< no wall is new since the caches' flags were set
-  bool stops = false;       ///< particles stop at the first wall: nothing responds
+  bool walls_match = true;          ///< no wall is new since the caches' flags were set
+  bool stops = false;               ///< particles stop at the first wall: nothing responds
+  const Vec3* positions = nullptr;  ///< of all vertices by the end of the step; null: as the complex has them
+
+  [[nodiscard]] const Vec3* now() const { return positions != nullptr ? positions : complex->positions().data(); }
 };
 
 /// How much of a step the batch did: all, nothing, or the number of its StepState. A number means that the step has

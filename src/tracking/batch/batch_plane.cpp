@@ -31,7 +31,7 @@ class PlaneBatch {
   PlaneBatch(const BatchScene& scene, const BatchSteps& steps, Counters& counters, InstructionSet set)
       : scene_(scene),
         set_(set),
-        space_(current_space<3>(*scene.complex)),
+        space_{&scene.complex->map(), {scene.now()}, scene.complex->simplex_count()},
         before_(scene.moved ? scene.complex->previous_positions().data() : nullptr),
         steps_(steps),
         size_(static_cast<std::uint32_t>(steps.states.size())),

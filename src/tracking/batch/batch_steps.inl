@@ -28,7 +28,7 @@ template <bool moved>
 struct Batch {
   Batch(const BatchScene& scene, const BatchSteps& steps, Counters& counts)
       : map(scene.complex->map()),
-        now(scene.complex->positions().data()),
+        now(scene.now()),
         before(scene.complex->previous_positions().data()),
         simplex_count(scene.complex->simplex_count()),
         size(static_cast<std::uint32_t>(steps.states.size())),
