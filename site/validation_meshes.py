@@ -52,6 +52,8 @@ def patches(points: Any, cells: Any, name: Callable[[Any], str]) -> dict[str, An
     _, first, count = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
     outer = faces[np.sort(first[count == 1])]
     names = np.array([name(points[f]) for f in outer])
+    flat = np.all(np.abs(points[outer][..., 1]) < 1e-9, axis=1)
+    assert np.all(names[flat] == "symmetry"), "a wall lies in the plane of symmetry"
     return {str(one): outer[names == one] for one in np.unique(names)}
 
 
@@ -77,7 +79,8 @@ def swept(p: int, layers: int, growth: float, along: Any, place: Any) -> tuple[A
     core = np.stack([x, y], axis=2) * (1.0 - 0.12 * (x * y / 0.36) ** 2)[..., None]
     rim = np.concatenate([core[-1], core[-2::-1, -1], core[0, -2::-1]])
     angle = np.linspace(0.0, math.pi, len(rim))
-    ring = shells(rim, np.stack([np.cos(angle), np.sin(angle)], axis=1), layers, growth)
+    round_rim = np.stack([np.cos(angle), np.round(np.sin(angle), 15)], axis=1)  # both its ends are in the plane y = 0
+    ring = shells(rim, round_rim, layers, growth)
     scale = math.sqrt(angle[1] / math.sin(angle[1]))
     return sewn([np.stack([place(scale * flat, s) for s in along], axis=2) for flat in (core, ring)])
 

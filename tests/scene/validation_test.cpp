@@ -216,7 +216,7 @@ double penetration(double far) {
 
 TEST(Validation, ATubeLetsThroughWhatGormleyAndKennedySay) {
   run("penetration.toml", [](const Simulation& s) {
-    if (s.steps() < 400) return;
+    if (s.steps() < 1600) return;
     const std::span<const ParticleStatus> all = s.statuses();
     EXPECT_EQ(std::count(all.begin(), all.end(), ParticleStatus::alive), 0);
     for (double z = 1.0; z <= 20.0; ++z) {
