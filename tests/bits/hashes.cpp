@@ -1,9 +1,12 @@
 // State hashes of runs that need no files, one a line: the same on every processor (./dev arm64 compares).
 #include <cstdio>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "dartcast/deformation.hpp"
 #include "dartcast/generators.hpp"
+#include "dartcast/scene.hpp"
 #include "dartcast/simulation.hpp"
 
 namespace {
@@ -49,6 +52,68 @@ MeshData mixed_box() {
   return generate_box(box);
 }
 
+// Drops of many sizes that swirl in a shaken box: all laws that need elementary functions, one set of them a scene.
+Scene drops() {
+  MeshData mesh = mixed_box();
+  DataArray u{"u", 3, {}};
+  DataArray k{"k", 1, {}};
+  for (const Vec3& p : mesh.points) {
+    for (const double v : {p.y - 2.5, 2.5 - p.x, 0.3 * p.z}) u.values.push_back(v);
+    k.values.push_back(0.3 - 0.05 * p.x);
+  }
+  mesh.point_data = {u, k, {"omega", 1, std::vector<double>(mesh.points.size(), 40.0)}};
+  Scene scene;
+  scene.environment.mesh = std::move(mesh);
+  scene.motion.dt = 0.01;
+  scene.motion.gravity = {0.0, 0.0, -9.81};
+  scene.motion.field.array = "u";
+  scene.motion.sample = {"k", "omega"};
+  scene.particles.resize(1);
+  scene.particles[0].source = RandomParticles{200};
+  scene.contact.general = Reflect{0.9, 0.1};
+  return scene;
+}
+
+Scene with_forces() {
+  Scene scene = drops();
+  scene.particles[0].material.density = 1000.0;
+  scene.particles[0].sizes = {.law = SizeLaw::rosin_rammler, .size = 2e-5, .spread = 2.5, .min = 1e-6, .max = 1e-4};
+  scene.motion.forces.terms = {Force::schiller_naumann, Force::buoyancy, Force::pressure_gradient, Force::virtual_mass,
+                               Force::saffman_mei,      Force::lorentz,  Force::brownian};
+  scene.motion.forces.fluid = {.density = 1.2, .viscosity = 1.8e-5, .mean_free_path = 6.8e-8, .temperature = 293.0};
+  scene.motion.forces.magnetic_field = {0.0, 0.0, 1.0};
+  return scene;
+}
+
+Scene in_turbulence() {
+  Scene scene = drops();
+  scene.motion.drag = 20.0;
+  scene.motion.turbulence = {.k = "k", .epsilon = {}, .omega = "omega", .lagrangian = 0.15};
+  return scene;
+}
+
+Scene diffusing() {
+  Scene scene = drops();
+  scene.motion.gravity = {};
+  scene.motion.diffusivity = "k";
+  scene.motion.brownian_bridge = true;
+  scene.contact.general = Stick{};
+  return scene;
+}
+
+Scene by_runge_kutta() {
+  Scene scene = drops();
+  scene.motion.gravity = {};
+  scene.motion.integrator = Integrator::rk4;
+  return scene;
+}
+
+void run(const char* name, const Scene& scene) {
+  Simulation simulation(scene);
+  for (int step = 0; step < 50; ++step) simulation.step();
+  std::printf("%-16s %s\n", name, simulation.state_hash().hex().c_str());
+}
+
 }  // namespace
 
 int main() {
@@ -65,4 +130,8 @@ int main() {
   SimulationOptions in_plane = falling();
   in_plane.gravity = {0.0, -9.81, 0.0};
   run("maze", generate_maze({.size = std::array{1.0, 1.0}}), in_plane, {});
+  run("forces", with_forces());
+  run("turbulence", in_turbulence());
+  run("diffusion", diffusing());
+  run("rk4", by_runge_kutta());
 }
