@@ -128,7 +128,7 @@ def absorption(axis: Any) -> None:
 def penetration(axis: Any) -> None:
     stuck = run("penetration")[-1].positions[:, 2]
     z = np.linspace(1, 20, 20)
-    axis.plot(z, [1 - (stuck < one).sum() / 3000 for one in z], **DOTS)
+    axis.plot(z, [1 - (stuck < one).sum() / 6000 for one in z], **DOTS)
     x = 0.0125 * np.linspace(0, 20, 200)
     short = 1 - 2.56 * x ** (2 / 3) + 1.2 * x + 0.177 * x ** (4 / 3)
     far = 0.819 * np.exp(-3.657 * x) + 0.097 * np.exp(-22.3 * x) + 0.032 * np.exp(-57 * x)
@@ -149,10 +149,39 @@ def bend(axis: Any) -> None:
     axis.set(title="bend: deposition, and Pui et al. 1987", xlabel="St", ylabel="share")
 
 
+def oscillation(axis: Any) -> None:
+    frames = run("oscillation")
+    t, turn = np.linspace(0, times(frames)[-1], 400), 4j * np.pi
+    for i, density in enumerate((2650, 1000, 100)):
+        axis.plot(times(frames), [1e3 * by_id(f, "velocity")[i, 0] if len(f.positions) else np.nan for f in frames], **DOTS)
+        k, tau = 1000 / density, density * 1e-6 / 18e-3
+        response = (1 / tau + 1.5 * k * turn) / (1 / tau + (1 + k / 2) * turn)
+        formula(axis, t, (response * np.exp(turn * t)).real - response.real * np.exp(-t / (tau * (1 + k / 2))))
+    axis.set(title="in water that oscillates", xlabel="s", ylabel="mm/s")
+
+
+def settling(axis: Any) -> None:
+    stuck = run("settling")[-1].positions[:, 2]
+    z = np.linspace(1, 20, 20)
+    axis.plot(z, [(stuck < one).sum() / 3000 for one in z], **DOTS)
+    root = np.cbrt(0.0075 * np.linspace(0, 20, 200))
+    formula(axis, root**3 / 0.0075, 2 / np.pi * ((2 * root**3 - root) * np.sqrt(1 - root**2) + np.arcsin(root)))
+    axis.set(title="sunk in a tube", xlabel="z, radii", ylabel="share")
+
+
+def uniform(axis: Any) -> None:
+    x = run("uniform")[-1].positions
+    for one in ((x[:, 0] ** 2 + x[:, 1] ** 2) / 1.00574**2, x[:, 2] / 20):
+        axis.plot(np.quantile(one, np.linspace(0, 1, 21)), np.linspace(0, 1, 21), **DOTS)
+    formula(axis, np.array([0, 1]), np.array([0, 1]))
+    axis.set(title="a cloud in a pulsing tube", xlabel="(r / R)$^2$, and z / L", ylabel="share within")
+
+
 SCENES = pathlib.Path(sys.argv[1])
 plt.rcParams.update({"svg.hashsalt": "dartcast", "svg.fonttype": "none", "font.size": 9, "axes.titlesize": 9.5})
-figure, axes = plt.subplots(3, 3, figsize=(10, 8.4), layout="constrained")
-for draw, axis in zip((terminal, stopping, diffusion, brownian, turbulence, sizes, absorption, penetration, bend), axes.flat):
+figure, axes = plt.subplots(4, 3, figsize=(10, 11.2), layout="constrained")
+ALL = (terminal, stopping, oscillation, diffusion, brownian, turbulence, sizes, uniform, absorption, penetration, settling, bend)
+for draw, axis in zip(ALL, axes.flat):
     draw(axis)
     axis.grid(color="0.92")
 figure.savefig(sys.argv[2], metadata={"Date": None, "Creator": None})

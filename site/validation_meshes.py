@@ -193,8 +193,8 @@ def velocity_of(case: pathlib.Path) -> Any:
     return np.array(re.findall(r"\((\S+) (\S+) (\S+)\)", rows[1]), dtype=float)
 
 
-def write(path: pathlib.Path, points: Any, cells: Any, sides: Any, u: Any = None) -> None:
-    """A legacy file of VTK. Its cell array `patch` numbers the patches."""
+def write(path: pathlib.Path, points: Any, cells: Any, sides: Any, u: Any = None, pulse: bool = False) -> None:
+    """A legacy file of VTK. Its cell array `patch` numbers the patches. `pulse`: with what a wall along z needs to pulse."""
     faces = [(tag, f) for tag, name in enumerate(sides, 1) for f in sides[name]]
     words = 9 * len(cells) + 5 * len(faces)
     lines = ["# vtk DataFile Version 3.0", "made by site/validation_meshes.py", "ASCII", "DATASET UNSTRUCTURED_GRID"]
@@ -208,6 +208,9 @@ def write(path: pathlib.Path, points: Any, cells: Any, sides: Any, u: Any = None
     lines += ["0"] * len(cells) + [str(tag) for tag, _ in faces]
     if u is not None:
         lines += [f"POINT_DATA {len(points)}", "VECTORS U double"] + ["%.4g %.4g %.4g" % tuple(x) for x in u]
+    if pulse:
+        lines += ["VECTORS rest double"] + ["0 0 0"] * len(points)
+        lines += ["VECTORS radial double"] + ["%.6g %.6g 0" % tuple(x[:2]) for x in points]
     path.write_text("\n".join([*lines, ""]))
 
 
@@ -215,7 +218,7 @@ def main(what: str, *rest: str) -> None:
     if what == "ball":
         write(pathlib.Path(rest[0]), *ball(4))
     elif what == "tube":
-        write(pathlib.Path(rest[0]), *tube())
+        write(pathlib.Path(rest[0]), *tube(), pulse=True)
     elif what == "flow":
         write_case(int(rest[0]), pathlib.Path(rest[1]))
     else:
