@@ -77,7 +77,7 @@ PREDICATES = re.compile(r"^(dartcast/predicates\.hpp|predicates/)")
 # The parts of a simulation belong to its room. All others see them through simulation/simulation_view.hpp.
 PARTS = "simulation/simulation_parts.hpp"
 
-STANDARD = re.compile(r"^([a-z_]+|sys/[a-z]+\.h|(fcntl|unistd|immintrin|regex)\.h)$")
+STANDARD = re.compile(r"^([a-z_]+|sys/[a-z]+\.h|(fcntl|unistd|emmintrin|immintrin|regex)\.h)$")
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
 SUFFIXES = {".cpp", ".hpp", ".inl"}
 

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "base/register_pair.inl"
 #include "base/simd_kernel.hpp"
 #include "dartcast/vec3.hpp"
 
@@ -14,23 +15,37 @@ DARTCAST_BEGIN_KERNEL
 namespace dartcast::detail::DARTCAST_SIMD {
 namespace {
 
-// If the instruction set has no such register, the compiler takes two of half the size.
-using Double4 = double __attribute__((vector_size(32)));
+using Double4 = DARTCAST_VECTOR(double);
+using Mask4 = DARTCAST_VECTOR(long long);  // all bits of a lane, or none; or a lane's bits
+using Bits4 = DARTCAST_VECTOR(unsigned long long);
 using Double2 = double __attribute__((vector_size(16)));
 using Float4 = float __attribute__((vector_size(16)));
-using Mask4 = long long __attribute__((vector_size(32)));  // all bits of a lane, or none; or a lane's bits
 // clang++ takes no notice of the alignment in an alias.
-typedef double UnalignedDouble4 __attribute__((vector_size(32), aligned(8), may_alias));  // NOLINT(modernize-use-using)
 typedef double UnalignedDouble2 __attribute__((vector_size(16), aligned(8), may_alias));  // NOLINT(modernize-use-using)
 typedef float UnalignedFloat4 __attribute__((vector_size(16), aligned(4), may_alias));    // NOLINT(modernize-use-using)
+
+#if defined(DARTCAST_AVX2)
+typedef double UnalignedDouble4 __attribute__((vector_size(32), aligned(8), may_alias));  // NOLINT(modernize-use-using)
 // NOLINTNEXTLINE(modernize-use-using)
 typedef long long UnalignedMask4 __attribute__((vector_size(32), aligned(8), may_alias));
 
-// The operations that the compiler does not find by itself.
-#if defined(DARTCAST_AVX2)
 // A bit for each lane that is set.
 inline unsigned lanes_set(const Mask4& m) {
   return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(m)));
+}
+// The lanes of a where the mask is set, of b elsewhere.
+inline Double4 choose(const Mask4& m, const Double4& a, const Double4& b) { return m ? a : b; }
+// The blend itself takes the sign.
+inline Mask4 by_sign(const Mask4& m) { return m < 0; }
+// The same bits.
+template <class To, class From>
+inline To bits_as(const From& x) {
+  return reinterpret_cast<To>(x);
+}
+// Lanes of a (0 to 3) and b (4 to 7).
+template <int i, int j, int k, int l>
+inline Double4 shuffled(const Double4& a, const Double4& b) {
+  return __builtin_shufflevector(a, b, i, j, k, l);
 }
 // The compiler makes two halves of __builtin_convertvector.
 inline Double4 widened(const Float4& x) { return _mm256_cvtps_pd(x); }
@@ -44,24 +59,58 @@ inline void store_pairs(const Double4& x, double* a, double* b) {
   _mm_storeu_pd(b, _mm256_extractf128_pd(x, 1));
 }
 inline Double4 root(const Double4& x) { return _mm256_sqrt_pd(x); }
+inline Double4 load_doubles(const double* in) { return *reinterpret_cast<const UnalignedDouble4*>(in); }
+inline void store_doubles(const Double4& four, double* out) { *reinterpret_cast<UnalignedDouble4*>(out) = four; }
+inline Mask4 load_bits(const void* in) { return *static_cast<const UnalignedMask4*>(in); }
+inline void store_bits(const Mask4& four, long long* out) { *reinterpret_cast<UnalignedMask4*>(out) = four; }
 #else
+// A bit for each lane that is set.
 inline unsigned lanes_set(const Mask4& m) {
-  const Mask4 bits = m & Mask4{1, 2, 4, 8};
-  return static_cast<unsigned>((bits[0] | bits[1]) | (bits[2] | bits[3]));
+#if defined(__SSE2__)
+  return static_cast<unsigned>(_mm_movemask_pd(reinterpret_cast<__m128d>(m.low)) |
+                               _mm_movemask_pd(reinterpret_cast<__m128d>(m.high)) << 2);
+#else
+  const auto bits = (m.low & Mask4::Half{1, 2}) | (m.high & Mask4::Half{4, 8});
+  return static_cast<unsigned>(bits[0] | bits[1]);
+#endif
 }
-inline Double4 widened(const Float4& x) { return __builtin_convertvector(x, Double4); }
-inline Float4 narrowed(const Double4& x) { return __builtin_convertvector(x, Float4); }
+inline Mask4 by_sign(const Mask4& m) { return m; }
+// Lanes of a (0 to 3) and b (4 to 7).
+template <int i, int j, int k, int l>
+inline Double4 shuffled(const Double4& a, const Double4& b) {
+  const auto half = [&](int lane) { return lane < 2 ? a.low : lane < 4 ? a.high : lane < 6 ? b.low : b.high; };
+  return {__builtin_shufflevector(half(i), half(j), i % 2, 2 + j % 2),
+          __builtin_shufflevector(half(k), half(l), k % 2, 2 + l % 2)};
+}
+#if defined(__SSE2__)
+inline Double4 widened(const Float4& x) { return {_mm_cvtps_pd(x), _mm_cvtps_pd(_mm_movehl_ps(x, x))}; }
+inline Float4 narrowed(const Double4& x) { return _mm_movelh_ps(_mm_cvtpd_ps(x.low), _mm_cvtpd_ps(x.high)); }
+inline Double4 root(const Double4& x) { return {_mm_sqrt_pd(x.low), _mm_sqrt_pd(x.high)}; }
+#else
+inline Double4 widened(const Float4& x) { return {Double2{x[0], x[1]}, Double2{x[2], x[3]}}; }
+inline Float4 narrowed(const Double4& x) {
+  return Float4{static_cast<float>(x.low[0]), static_cast<float>(x.low[1]), static_cast<float>(x.high[0]),
+                static_cast<float>(x.high[1])};
+}
+inline Double4 root(const Double4& x) {
+  return {Double2{std::sqrt(x.low[0]), std::sqrt(x.low[1])}, Double2{std::sqrt(x.high[0]), std::sqrt(x.high[1])}};
+}
+#endif
+// Two doubles from each of two places.
 inline Double4 load_pairs(const double* a, const double* b) {
   const Double2 low = *reinterpret_cast<const UnalignedDouble2*>(a);
   const Double2 high = *reinterpret_cast<const UnalignedDouble2*>(b);
-  return __builtin_shufflevector(low, high, 0, 1, 2, 3);
+  return {low, high};
 }
 inline void store_pairs(const Double4& x, double* a, double* b) {
-  *reinterpret_cast<UnalignedDouble2*>(a) = Double2{x[0], x[1]};
-  *reinterpret_cast<UnalignedDouble2*>(b) = Double2{x[2], x[3]};
+  *reinterpret_cast<UnalignedDouble2*>(a) = x.low;
+  *reinterpret_cast<UnalignedDouble2*>(b) = x.high;
 }
-inline Double4 root(const Double4& x) {
-  return Double4{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])};
+inline Double4 load_doubles(const double* in) { return load_pairs(in, in + 2); }
+inline void store_doubles(const Double4& four, double* out) { store_pairs(four, out, out + 2); }
+inline Mask4 load_bits(const void* in) { return bits_as<Mask4>(load_doubles(static_cast<const double*>(in))); }
+inline void store_bits(const Mask4& four, long long* out) {
+  store_doubles(bits_as<Double4>(four), reinterpret_cast<double*>(out));
 }
 #endif
 
@@ -70,13 +119,11 @@ inline bool any(const Mask4& m) { return lanes_set(m) != 0; }
 inline Double4 splat(double x) { return Double4{x, x, x, x}; }
 inline Mask4 splat_bits(long long x) { return Mask4{x, x, x, x}; }
 inline Double4 magnitude(const Double4& v) {
-  return reinterpret_cast<Double4>(reinterpret_cast<Mask4>(v) & splat_bits(0x7fffffffffffffff));
+  return bits_as<Double4>(bits_as<Mask4>(v) & splat_bits(0x7fffffffffffffff));
 }
-inline Double4 larger(const Double4& a, const Double4& b) { return a > b ? a : b; }
-inline Double4 smaller(const Double4& a, const Double4& b) { return a < b ? a : b; }
+inline Double4 larger(const Double4& a, const Double4& b) { return choose(a > b, a, b); }
+inline Double4 smaller(const Double4& a, const Double4& b) { return choose(a < b, a, b); }
 
-inline Double4 load_doubles(const double* in) { return *reinterpret_cast<const UnalignedDouble4*>(in); }
-inline void store_doubles(const Double4& four, double* out) { *reinterpret_cast<UnalignedDouble4*>(out) = four; }
 inline Double4 load_floats(const float* in) {
   const Float4 four = *reinterpret_cast<const UnalignedFloat4*>(in);
   return widened(four);
@@ -103,7 +150,7 @@ inline Vec3x4 larger(const Vec3x4& a, const Vec3x4& b) {
 inline Double4 largest(const Vec3x4& a) { return larger(larger(a.x, a.y), a.z); }
 inline Double4 smallest(const Vec3x4& a) { return smaller(smaller(a.x, a.y), a.z); }
 inline Vec3x4 choose(const Mask4& m, const Vec3x4& a, const Vec3x4& b) {
-  return {m ? a.x : b.x, m ? a.y : b.y, m ? a.z : b.z};
+  return {choose(m, a.x, b.x), choose(m, a.y, b.y), choose(m, a.z, b.z)};
 }
 
 inline Vec3x4 load_vec3x4(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
@@ -111,16 +158,14 @@ inline Vec3x4 load_vec3x4(const Vec3& a, const Vec3& b, const Vec3& c, const Vec
   const Double4 xy13 = load_pairs(&b.x, &d.x);
   const Double4 yz02 = load_pairs(&a.y, &c.y);
   const Double4 yz13 = load_pairs(&b.y, &d.y);
-  return {__builtin_shufflevector(xy02, xy13, 0, 4, 2, 6), __builtin_shufflevector(xy02, xy13, 1, 5, 3, 7),
-          __builtin_shufflevector(yz02, yz13, 1, 5, 3, 7)};
+  return {shuffled<0, 4, 2, 6>(xy02, xy13), shuffled<1, 5, 3, 7>(xy02, xy13), shuffled<1, 5, 3, 7>(yz02, yz13)};
 }
 // Points in a row.
 inline Vec3x4 load_vec3x4(const Vec3* p) {
   const Double4 xy02 = load_pairs(&p[0].x, &p[2].x);
   const Double4 zx02 = load_pairs(&p[0].z, &p[2].z);  // z and the next one's x
   const Double4 yz13 = load_pairs(&p[1].y, &p[3].y);
-  return {__builtin_shufflevector(xy02, zx02, 0, 5, 2, 7), __builtin_shufflevector(xy02, yz13, 1, 4, 3, 6),
-          __builtin_shufflevector(zx02, yz13, 0, 5, 2, 7)};
+  return {shuffled<0, 5, 2, 7>(xy02, zx02), shuffled<1, 4, 3, 6>(xy02, yz13), shuffled<0, 5, 2, 7>(zx02, yz13)};
 }
 
 // The numbers of four items.

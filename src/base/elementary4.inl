@@ -39,7 +39,7 @@ inline Reduced4 reduced_turns(const Double4& t) {
   const Double4 f1 = f - f0;
   const Double4 low = ((f0 * turn_parts[0] - high) + (f0 * turn_parts[1] + f1 * turn_parts[0])) +
                       (f1 * turn_parts[1] + f * turn_parts[2]);
-  return {high, low, reinterpret_cast<Mask4>(quarters)};
+  return {high, low, bits_as<Mask4>(quarters)};
 }
 
 inline Reduced4 reduced_radians(const Double4& x) {
@@ -51,7 +51,7 @@ inline Reduced4 reduced_radians(const Double4& x) {
   const Double4 taken = first - sum;
   const Double4 off = ((first - (sum + taken)) + (taken - second)) - k * half_pi_parts[2];
   const Double4 high = sum + off;
-  return {high, (sum - high) + off, reinterpret_cast<Mask4>(shifted)};
+  return {high, (sum - high) + off, bits_as<Mask4>(shifted)};
 }
 
 inline SineCosine4 sine_cosine_of(const Double4& x, const Reduced4& r) {
@@ -62,13 +62,13 @@ inline SineCosine4 sine_cosine_of(const Double4& x, const Reduced4& r) {
   const Double4 near = one - half;
   const Double4 cosine = near + (((one - near) - half) + (z * z * polynomial(cosine_terms, z) - r.high * r.low));
   const Mask4 odd = (r.quadrant & splat_bits(1)) != 0;
-  const Double4 s = odd ? cosine : sine;
-  const Double4 c = odd ? sine : cosine;
-  const Mask4 sign = reinterpret_cast<Mask4>(x) & splat_bits(static_cast<long long>(0x8000000000000000U));
-  const Double4 sign_of_x = reinterpret_cast<Double4>(sign | reinterpret_cast<Mask4>(one));
+  const Double4 s = choose(odd, cosine, sine);
+  const Double4 c = choose(odd, sine, cosine);
+  const Mask4 sign = bits_as<Mask4>(x) & splat_bits(static_cast<long long>(0x8000000000000000U));
+  const Double4 sign_of_x = bits_as<Double4>(sign | bits_as<Mask4>(one));
   const Mask4 below = (r.quadrant & splat_bits(2)) != 0;
   const Mask4 left = ((r.quadrant + 1) & splat_bits(2)) != 0;
-  return {sign_of_x * (below ? splat(0.0) - s : s), left ? splat(0.0) - c : c};
+  return {sign_of_x * choose(below, splat(0.0) - s, s), choose(left, splat(0.0) - c, c)};
 }
 
 // For numbers that the reductions above are not for.
@@ -97,17 +97,15 @@ inline SineCosine4 sine_cosine_of_turns(const Double4& t) {
   return one_by_one(t, dartcast::sine_cosine_of_turns);
 }
 
-using Bits4 = unsigned long long __attribute__((vector_size(32)));
-
 struct ExponentialParts4 {
   Double4 high, low;
   Double4 power;
 };
 
 inline ExponentialParts4 exponential_parts(const Double4& x) {
-  const Mask4 sign = reinterpret_cast<Mask4>(x) & splat_bits(static_cast<long long>(0x8000000000000000U));
+  const Mask4 sign = bits_as<Mask4>(x) & splat_bits(static_cast<long long>(0x8000000000000000U));
   const Double4 size = (magnitude(x) * per_ln2 + to_integer) - to_integer;
-  const Double4 k = reinterpret_cast<Double4>(reinterpret_cast<Mask4>(size) | sign);
+  const Double4 k = bits_as<Double4>(bits_as<Mask4>(size) | sign);
   const Double4 first = x - k * ln2_parts[0];
   const Double4 second = k * ln2_parts[1];
   const Double4 r = first - second;
@@ -117,8 +115,8 @@ inline ExponentialParts4 exponential_parts(const Double4& x) {
 
 // x 2^k. Precondition: x is 0 or both are normal.
 inline Double4 scaled(const Double4& x, const Double4& k) {
-  const Mask4 bits = reinterpret_cast<Mask4>(x) + (reinterpret_cast<Mask4>(k + to_integer) << 52);
-  return x == 0.0 ? x : reinterpret_cast<Double4>(bits);
+  const Mask4 bits = bits_as<Mask4>(x) + (bits_as<Mask4>(k + to_integer) << 52);
+  return choose(x == 0.0, x, bits_as<Double4>(bits));
 }
 
 template <class Function>
@@ -138,17 +136,17 @@ inline Double4 exponential_less_one(const Double4& x) {
   const ExponentialParts4 e = exponential_parts(larger(x, splat(lowest_exponent)));
   const Double4 less_one = e.high + e.low;
   const Double4 sum = scaled(less_one, e.power) + (scaled(splat(1.0), e.power) - splat(1.0));
-  return x == 0.0 ? x : e.power == 0.0 ? less_one : sum;
+  return choose(x == 0.0, x, choose(e.power == 0.0, less_one, sum));
 }
 
 // As dartcast::logarithm().
 inline Double4 logarithm(const Double4& x) {
   if (lanes_set((x >= splat(0x1p-1000)) & (x <= splat(0x1p+1000))) != 15) return each(x, dartcast::logarithm);
-  const auto bits = reinterpret_cast<Bits4>(x);
+  const auto bits = bits_as<Bits4>(x);
   const Bits4 power = (bits - root_of_half_bits + (1024ULL << 52U)) >> 52;
-  const Double4 f = reinterpret_cast<Double4>(bits - ((power - 1024ULL) << 52)) - splat(1.0);
+  const Double4 f = bits_as<Double4>(bits - ((power - 1024ULL) << 52)) - splat(1.0);
   const Bits4 in_last_bits = power | 0x4330000000000000ULL;
-  const Double4 k = reinterpret_cast<Double4>(in_last_bits) - splat(0x1p+52 + 1024.0);
+  const Double4 k = bits_as<Double4>(in_last_bits) - splat(0x1p+52 + 1024.0);
   const Double4 s = f / (splat(2.0) + f);
   const Double4 z = s * s;
   const Double4 half = splat(0.5) * f * f;

@@ -10,8 +10,13 @@ DARTCAST_BEGIN_KERNEL
 namespace dartcast::detail::DARTCAST_SIMD {
 namespace {
 
-using Float8 = float __attribute__((vector_size(32)));
-using Mask8 = int __attribute__((vector_size(32)));  // all bits of a lane, or none; or a lane's bits
+using Float8 = DARTCAST_VECTOR(float);
+using Mask8 = DARTCAST_VECTOR(int);  // all bits of a lane, or none; or a lane's bits
+
+#if defined(DARTCAST_AVX2)
+inline Float8 choose(const Mask8& m, const Float8& a, const Float8& b) { return m ? a : b; }
+inline Mask8 choose(const Mask8& m, const Mask8& a, const Mask8& b) { return m ? a : b; }
+#endif
 
 inline Mask8 splat_int(int x) { return Mask8{x, x, x, x, x, x, x, x}; }
 
@@ -40,11 +45,25 @@ inline Bits8 negative_bits(const Mask8& a) {
   const auto bits = static_cast<Bits8>(_mm256_movemask_ps(reinterpret_cast<__m256>(a)));
   return (bits | bits << 12U) & bits_of_number_0;
 }
+#elif defined(__SSE2__)
+inline Bits8 negative_bits(const Mask8& a, const Mask8& b, const Mask8& c, const Mask8& d) {
+  const auto half = [](const auto& i, const auto& j, const auto& k, const auto& l) {
+    const __m128i ij = _mm_packs_epi32(reinterpret_cast<__m128i>(i), reinterpret_cast<__m128i>(j));
+    const __m128i kl = _mm_packs_epi32(reinterpret_cast<__m128i>(k), reinterpret_cast<__m128i>(l));
+    return static_cast<Bits8>(_mm_movemask_epi8(_mm_packs_epi16(ij, kl)));
+  };
+  return half(a.low, b.low, c.low, d.low) | half(a.high, b.high, c.high, d.high) << 16U;
+}
+inline Bits8 negative_bits(const Mask8& a) {
+  return static_cast<Bits8>(_mm_movemask_ps(reinterpret_cast<__m128>(a.low)) |
+                            _mm_movemask_ps(reinterpret_cast<__m128>(a.high)) << 16);
+}
 #else
 inline Bits8 negative_bits(const Mask8& a, const Mask8& b, const Mask8& c, const Mask8& d) {
   const Mask8 bits =
       ((a < 0) & lane_bits(0)) | ((b < 0) & lane_bits(1)) | ((c < 0) & lane_bits(2)) | ((d < 0) & lane_bits(3));
-  return static_cast<Bits8>((bits[0] | bits[1] | bits[2] | bits[3]) | (bits[4] | bits[5] | bits[6] | bits[7]));
+  const auto all = bits.low | bits.high;
+  return static_cast<Bits8>((all[0] | all[1]) | (all[2] | all[3]));
 }
 inline Bits8 negative_bits(const Mask8& a) { return negative_bits(a, Mask8{}, Mask8{}, Mask8{}); }
 #endif
@@ -66,13 +85,15 @@ inline Bits8 in_two_of_4(Bits8 bits) {
 inline unsigned in_a_row(Bits8 bits) { return (bits | bits >> 12U) & 255U; }
 
 inline Float8 splat_float(float x) { return Float8{x, x, x, x, x, x, x, x}; }
-inline Float8 magnitude(const Float8& v) {
-  return reinterpret_cast<Float8>(reinterpret_cast<Mask8>(v) & splat_int(0x7fffffff));
-}
-inline Float8 larger(const Float8& a, const Float8& b) { return a > b ? a : b; }
-inline Float8 smaller(const Float8& a, const Float8& b) { return a < b ? a : b; }
+inline Float8 magnitude(const Float8& v) { return bits_as<Float8>(bits_as<Mask8>(v) & splat_int(0x7fffffff)); }
+inline Float8 larger(const Float8& a, const Float8& b) { return choose(a > b, a, b); }
+inline Float8 smaller(const Float8& a, const Float8& b) { return choose(a < b, a, b); }
 inline Float8 narrowed(const Double4& low, const Double4& high) {
+#if defined(DARTCAST_AVX2)
   return __builtin_shufflevector(narrowed(low), narrowed(high), 0, 1, 2, 3, 4, 5, 6, 7);
+#else
+  return {narrowed(low), narrowed(high)};
+#endif
 }
 
 }  // namespace

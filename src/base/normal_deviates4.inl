@@ -16,8 +16,7 @@ inline Bits4 splat_word(std::uint32_t word) { return Bits4{word, word, word, wor
 // The products of the lower halves.
 inline Bits4 product_of_words(const Bits4& a, std::uint32_t factor) {
 #if defined(DARTCAST_AVX2)
-  return reinterpret_cast<Bits4>(
-      _mm256_mul_epu32(reinterpret_cast<__m256i>(a), reinterpret_cast<__m256i>(splat_word(factor))));
+  return bits_as<Bits4>(_mm256_mul_epu32(reinterpret_cast<__m256i>(a), reinterpret_cast<__m256i>(splat_word(factor))));
 #else
   return (a & 0xffffffffULL) * std::uint64_t{factor};
 #endif
@@ -41,7 +40,7 @@ inline std::array<Bits4, 4> random_bits(const RandomMoment& moment, const Bits4&
 // The middles of pieces of [0, 1].
 inline Double4 middle_of_piece(const Bits4& word) {
   const Bits4 in_last_bits = (word & 0xffffffffULL) | 0x4330000000000000ULL;
-  return (reinterpret_cast<Double4>(in_last_bits) - splat(0x1p+52) + splat(0.5)) * splat(0x1p-32);
+  return (bits_as<Double4>(in_last_bits) - splat(0x1p+52) + splat(0.5)) * splat(0x1p-32);
 }
 
 // A pair of each item.

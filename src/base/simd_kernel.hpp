@@ -13,6 +13,9 @@
 #pragma once
 
 #if !defined(DARTCAST_AVX2)
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
 #define DARTCAST_SIMD portable
 #define DARTCAST_BEGIN_KERNEL
 #define DARTCAST_END_KERNEL

@@ -39,21 +39,20 @@ struct ContactSide {
     const Double4 xy13 = load_pairs(row[1], row[3]);
     const Double4 zw02 = load_pairs(row[0] + 2, row[2] + 2);
     const Double4 zw13 = load_pairs(row[1] + 2, row[3] + 2);
-    velocity = {__builtin_shufflevector(xy02, xy13, 0, 4, 2, 6), __builtin_shufflevector(xy02, xy13, 1, 5, 3, 7),
-                __builtin_shufflevector(zw02, zw13, 0, 4, 2, 6)};
-    inverse_mass = __builtin_shufflevector(zw02, zw13, 1, 5, 3, 7);
+    velocity = {shuffled<0, 4, 2, 6>(xy02, xy13), shuffled<1, 5, 3, 7>(xy02, xy13), shuffled<0, 4, 2, 6>(zw02, zw13)};
+    inverse_mass = shuffled<1, 5, 3, 7>(zw02, zw13);
   }
 
   void write(const BodyRows& bodies) const {
     const auto& row = bodies.row;
-    store_pairs(__builtin_shufflevector(velocity.x, velocity.y, 0, 4, 2, 6), row[0], row[2]);
-    store_pairs(__builtin_shufflevector(velocity.x, velocity.y, 1, 5, 3, 7), row[1], row[3]);
-    store_pairs(__builtin_shufflevector(velocity.z, inverse_mass, 0, 4, 2, 6), row[0] + 2, row[2] + 2);
-    store_pairs(__builtin_shufflevector(velocity.z, inverse_mass, 1, 5, 3, 7), row[1] + 2, row[3] + 2);
+    store_pairs(shuffled<0, 4, 2, 6>(velocity.x, velocity.y), row[0], row[2]);
+    store_pairs(shuffled<1, 5, 3, 7>(velocity.x, velocity.y), row[1], row[3]);
+    store_pairs(shuffled<0, 4, 2, 6>(velocity.z, inverse_mass), row[0] + 2, row[2] + 2);
+    store_pairs(shuffled<1, 5, 3, 7>(velocity.z, inverse_mass), row[1] + 2, row[3] + 2);
   }
 };
 
-inline Double4 positive_part(const Double4& x) { return x > 0.0 ? x : Double4{}; }
+inline Double4 positive_part(const Double4& x) { return choose(x > 0.0, x, Double4{}); }
 
 // Impulses on the spheres b, and the opposite ones on a.
 inline void apply(const Vec3x4& impulse, ContactSide& a, ContactSide& b, const BodyRows& a_rows,
@@ -94,7 +93,7 @@ inline void solve_packet(const ContactPacket& p, PacketImpulses& impulses, const
   const Double4 limit = load(surfaces.friction) * normal_impulse;
   const Double4 square = dot(tangent_impulse, tangent_impulse);
   const Mask4 slips = square > limit * limit;
-  if (any(slips)) tangent_impulse = tangent_impulse * (slips ? limit / root(square) : 1.0 + Double4{});
+  if (any(slips)) tangent_impulse = tangent_impulse * choose(slips, limit / root(square), 1.0 + Double4{});
   apply((tangent_impulse - across_before) + normal * (normal_impulse - along_before), a, b, a_rows, b_rows);
   store(normal_impulse, impulses.normal_impulse);
   store(tangent_impulse.x, impulses.tangent_impulse[0]);

@@ -13,7 +13,7 @@ DARTCAST_BEGIN_KERNEL
 namespace dartcast::detail::DARTCAST_SIMD {
 namespace {
 
-inline Double4 flushed4(const Double4& x) { return magnitude(x) < splat(smallest_magnitude) ? splat(0.0) : x; }
+inline Double4 flushed4(const Double4& x) { return choose(magnitude(x) < splat(smallest_magnitude), splat(0.0), x); }
 inline Vec3x4 flushed4(const Vec3x4& v) { return {flushed4(v.x), flushed4(v.y), flushed4(v.z)}; }
 
 // A bit for each pair that is proved apart: the volume has one sign.

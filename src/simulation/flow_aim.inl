@@ -14,7 +14,7 @@ namespace dartcast::detail::DARTCAST_SIMD {
 namespace {
 
 // As flushed() of predicates.hpp.
-inline Double4 flushed(const Double4& x) { return magnitude(x) < splat(smallest_magnitude) ? splat(0.0) : x; }
+inline Double4 flushed(const Double4& x) { return choose(magnitude(x) < splat(smallest_magnitude), splat(0.0), x); }
 inline Vec3x4 flushed(const Vec3x4& v) { return {flushed(v.x), flushed(v.y), flushed(v.z)}; }
 
 class FlowKernel {

@@ -58,7 +58,7 @@ struct WeightGradients {
     const Double4 first = splat(0.0) - ((change[0] + change[1]) + change[2]);
     const Double4 most =
         larger(larger(magnitude(change[0]), magnitude(change[1])), larger(magnitude(change[2]), magnitude(first)));
-    const Double4 share = most > splat(1.0) ? splat(1.0) / most : splat(1.0);
+    const Double4 share = choose(most > splat(1.0), splat(1.0) / most, splat(1.0));
     return {{w.at[0] + first * share, w.at[1] + change[0] * share, w.at[2] + change[1] * share,
              w.at[3] + change[2] * share}};
   }
@@ -187,10 +187,10 @@ class ForceKernel {
       case ForceTerms::Drag::none:
       case ForceTerms::Drag::stokes: break;
       case ForceTerms::Drag::schiller_naumann:
-        factor = slow ? splat(1.0) + 0.15 * power(some, 0.687) : reynolds * (0.44 / 24.0);
+        factor = choose(slow, splat(1.0) + 0.15 * power(some, 0.687), reynolds * (0.44 / 24.0));
         break;
       case ForceTerms::Drag::putnam:
-        factor = slow ? splat(1.0) + power(some, 2.0 / 3.0) * (1.0 / 6.0) : reynolds * (0.424 / 24.0);
+        factor = choose(slow, splat(1.0) + power(some, 2.0 / 3.0) * (1.0 / 6.0), reynolds * (0.424 / 24.0));
         break;
     }
     return splat(18.0 * terms_.fluid.viscosity) * factor / (density * diameter * diameter * slip_factor(diameter));
@@ -210,16 +210,16 @@ class ForceKernel {
     const Double4 of_shear =
         root(square(curl)) * diameter * diameter * splat(terms_.fluid.density / terms_.fluid.viscosity);
     const Mask4 acts = (reynolds > splat(1e-100)) & (of_shear > splat(1e-100));
-    const Double4 some = acts ? reynolds : splat(1.0);
-    const Double4 shear = acts ? of_shear : splat(1.0);
+    const Double4 some = choose(acts, reynolds, splat(1.0));
+    const Double4 shear = choose(acts, of_shear, splat(1.0));
     const Double4 b = 0.5 * shear / some;
     const Double4 alpha = 0.3314 * root(b);
     const Double4 fading = exponential(smaller(some, splat(40.0)) * -0.1);
     const Double4 slow = (splat(1.0) - alpha) * fading + alpha;
     const Double4 fast = 0.0524 * root(b * some);
-    const Double4 factor = some <= splat(40.0) ? slow : fast;
+    const Double4 factor = choose(some <= splat(40.0), slow, fast);
     const Double4 coefficient = factor * (3.0 * 6.46 / (2.0 * std::numbers::pi)) / root(shear);
-    return cross(slip, curl) * (acts ? coefficient : splat(0.0));
+    return cross(slip, curl) * choose(acts, coefficient, splat(0.0));
   }
 
   const ForceTerms& terms_;
@@ -238,9 +238,9 @@ inline Shares4 shares_of(const Double4& z) {
   const Double4 small = splat(1.0) - z * series;
   const Mask4 is_small = z <= splat(0.34);
   if (lanes_set(is_small) == 15) return {small, series};
-  const Double4 some = is_small ? splat(1.0) : z;
+  const Double4 some = choose(is_small, splat(1.0), z);
   const Double4 phi = (splat(0.0) - exponential_less_one(splat(0.0) - some)) / some;
-  return {is_small ? small : phi, is_small ? series : (splat(1.0) - phi) / some};
+  return {choose(is_small, small, phi), choose(is_small, series, (splat(1.0) - phi) / some)};
 }
 
 class HeldKernel {
@@ -308,10 +308,10 @@ class ThermalKernel {
     const Double4 w = shares.phi / (splat(2.0) - lost);
     const Mask4 is_small = z <= splat(0.34);
     const Double4 series = z * polynomial(rest_terms, splat(0.0) - z) / (splat(2.0) - lost);
-    const Double4 rest = is_small ? series : (splat(1.0) - 2.0 * w) / (is_small ? splat(1.0) : z);
+    const Double4 rest = choose(is_small, series, (splat(1.0) - 2.0 * w) / choose(is_small, splat(1.0), z));
     const Double4 speed = root(s * lost * (splat(2.0) - lost));
     const Double4 spread = root(2.0 * s * rest) * motion_.duration;
-    const auto ids = reinterpret_cast<Bits4>(rows.load(motion_.ids));
+    const auto ids = bits_as<Bits4>(rows.load(motion_.ids));
     const std::array<Bits4, 4> a = random_bits(motion_.moment, ids, 0);
     const std::array<Bits4, 4> b = random_bits(motion_.moment, ids, 1);
     const SineCosine4 first = normal_pair(a[0], a[1]);
@@ -345,7 +345,7 @@ void shift_samples(const SamplesOfField& samples, std::span<const Vec3> ways) {
     const Vec3x4 change = load_gradients(rows, samples.gradients).along(rows.load(ways));
     const Double4 size = square(change);
     const Double4 spread = rows.load(std::span<const double>(samples.spreads));
-    const Double4 share = size > spread ? root(spread / size) : splat(1.0);
+    const Double4 share = choose(size > spread, root(spread / size), splat(1.0));
     rows.store(rows.load(std::span<const Vec3>(samples.values)) + change * share, samples.values);
   }
 }
@@ -364,7 +364,7 @@ void move_held(const HeldMotion& motion) {
 void draw_ways(const RandomWays& random) {
   for (std::size_t i = 0; i < random.ways.size(); i += 4) {
     const Rows4 rows(i, random.ways.size());
-    const auto bits = random_bits(random.moment, reinterpret_cast<Bits4>(rows.load(random.ids)), 0);
+    const auto bits = random_bits(random.moment, bits_as<Bits4>(rows.load(random.ids)), 0);
     const SineCosine4 first = normal_pair(bits[0], bits[1]);
     const Double4 z = random.planar ? splat(0.0) : normal_pair(bits[2], bits[3]).cosine;
     rows.store(Vec3x4{first.cosine, first.sine, z} * splat(random.length), random.ways);

@@ -83,7 +83,7 @@ class MotionKernel {
     const Double4 depth = dot(r, direction_);
     const SineCosine4 at_half = sine_cosine(half);
     const Vec3x4 aside = r - axis_ * height - direction_ * depth;
-    const Double4 chord = half == splat(0.0) ? height : height * (at_half.sine / half);
+    const Double4 chord = choose(half == splat(0.0), height, height * (at_half.sine / half));
     const Double4 along = chord * at_half.cosine - depth * (2.0 * at_half.sine * at_half.cosine);
     const Double4 across = chord * at_half.sine + depth * (1.0 - 2.0 * at_half.sine * at_half.sine);
     return axis_ * along + direction_ * across + aside;

@@ -14,13 +14,13 @@ namespace {
 
 // The reverse of load_vec3x4().
 inline void store_vec3x4(const Vec3x4& four, Vec3* out) {
-  const Double4 xy01 = __builtin_shufflevector(four.x, four.y, 0, 4, 1, 5);
-  const Double4 xy23 = __builtin_shufflevector(four.x, four.y, 2, 6, 3, 7);
-  const Double4 yz1 = __builtin_shufflevector(four.y, four.z, 1, 5, 1, 5);
+  const Double4 xy01 = shuffled<0, 4, 1, 5>(four.x, four.y);
+  const Double4 xy23 = shuffled<2, 6, 3, 7>(four.x, four.y);
+  const Double4 yz1 = shuffled<1, 5, 1, 5>(four.y, four.z);
   double* const at = &out->x;
-  store_doubles(__builtin_shufflevector(xy01, four.z, 0, 1, 4, 2), at);
-  store_doubles(__builtin_shufflevector(yz1, xy23, 0, 1, 4, 5), at + 4);
-  store_doubles(__builtin_shufflevector(xy23, four.z, 6, 2, 3, 7), at + 8);
+  store_doubles(shuffled<0, 1, 4, 2>(xy01, four.z), at);
+  store_doubles(shuffled<0, 1, 4, 5>(yz1, xy23), at + 4);
+  store_doubles(shuffled<6, 2, 3, 7>(xy23, four.z), at + 8);
 }
 
 // Four rows of arrays. Beyond the end the last row is loaded again, and not stored.
@@ -42,7 +42,7 @@ class Rows4 {
     return Double4{all[at(0)], all[at(1)], all[at(2)], all[at(3)]};
   }
   [[nodiscard]] Mask4 load(std::span<const std::uint64_t> all) const {
-    if (count_ == 4) return *reinterpret_cast<const UnalignedMask4*>(&all[first_]);
+    if (count_ == 4) return load_bits(&all[first_]);
     const auto bits = [&](unsigned k) { return static_cast<long long>(all[at(k)]); };
     return Mask4{bits(0), bits(1), bits(2), bits(3)};
   }

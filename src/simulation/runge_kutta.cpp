@@ -1,6 +1,6 @@
 // Four stages of a Runge-Kutta step, each reached by a walk from the particle.
 //
-// Of many particles, a stage has two phases: the batch walks copies of their states, then the field is evaluated where
+// For many particles a stage has two phases: the batch walks copies of their states, then the field is evaluated where
 // these have arrived, four at a time. A walk that the batch does not take to its end is left to the stage of one particle.
 #include "simulation/runge_kutta.hpp"
 
@@ -253,7 +253,7 @@ class RungeKuttaBatch {
   const RungeKuttaStep& step_;
   const detail::FlowParticles& particles_;
   std::size_t size_;
-  // Of the stage.
+  // These are of the last stage.
   std::vector<Vec3> targets_;
   std::vector<ParticleState> states_;
   std::vector<detail::VertexNumbers> vertices_;

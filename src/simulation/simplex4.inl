@@ -16,7 +16,7 @@ struct Weights4 {
 // The barycentric coordinates that the determinants prove.
 inline Weights4 weights_of(const BatchDeterminants& d) {
   Weights4 w;
-  for (unsigned i = 0; i < 4; ++i) w.at[i] = d.value[i] < splat(0.0) ? splat(0.0) : d.value[i];
+  for (unsigned i = 0; i < 4; ++i) w.at[i] = choose(d.value[i] < splat(0.0), splat(0.0), d.value[i]);
   const Double4 sum = ((w.at[0] + w.at[1]) + w.at[2]) + w.at[3];
   for (Double4& c : w.at) c /= sum;
   return w;

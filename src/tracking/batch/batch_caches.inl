@@ -31,7 +31,7 @@ inline void store_previous_geometry(const BatchDeterminants& d, SimplexCache4& c
   const Mask4 known = d.proves_coordinates();
   for (unsigned i = 0; i < 4; ++i) {
     store_vectors(d.relative[i], caches, i);
-    store_doubles(known ? d.value[i] : splat(unknown), caches.w[i].data());
+    store_doubles(choose(known, d.value[i], splat(unknown)), caches.w[i].data());
   }
 }
 
@@ -91,7 +91,8 @@ inline unsigned store_barycentric(const BatchDeterminants& d, const Vec3x4& p, S
       exact &= (g.x * volume == normal.x) & (g.y * volume == normal.y) & (g.z * volume == normal.z) &
                is_zero(g, at_origin[i], p + a);
   }
-  for (unsigned i = 0; i < 4; ++i) store_doubles(proved ? at_origin[i] : splat(proves_nothing), caches.w[i].data());
+  for (unsigned i = 0; i < 4; ++i)
+    store_doubles(choose(proved, at_origin[i], splat(proves_nothing)), caches.w[i].data());
   return ask_exact ? lanes_set(proved & exact) : 0;
 }
 
@@ -126,7 +127,7 @@ inline void forget(SimplexCache4* caches, CacheFlags* marks, std::uint32_t i) {
 }
 
 // As flushed() in tracking/representable_point.hpp.
-inline Double4 without_tiny(const Double4& x) { return magnitude(x) < smallest_magnitude ? Double4{} : x; }
+inline Double4 without_tiny(const Double4& x) { return choose(magnitude(x) < smallest_magnitude, Double4{}, x); }
 inline Vec3x4 without_tiny(const Vec3x4& x) { return {without_tiny(x.x), without_tiny(x.y), without_tiny(x.z)}; }
 
 // As combine() in tracking/carry.hpp: the points of simplices whose coordinates are proportional to w.

@@ -29,7 +29,7 @@ struct LineCorner8 {
 };
 inline Float8 side(const LineCorner8& a, const LineCorner8& b) { return a.u * b.v - a.v * b.u; }
 inline LineCorner8 choose(const Mask8& m, const LineCorner8& a, const LineCorner8& b) {
-  return {m ? a.u : b.u, m ? a.v : b.v, m ? a.z : b.z};
+  return {choose(m, a.u, b.u), choose(m, a.v, b.v), choose(m, a.z, b.z)};
 }
 
 // By which triangles lines leave.
@@ -115,7 +115,7 @@ struct CellWalks8 {
       farthest = larger(farthest, larger(magnitude(near[i].z), magnitude(far[i].z)));
     }
     const Float8 sum = splat_float(rounded_side_error) * (most * most) + side_bound;
-    return larger(most, farthest) <= reach ? sum : splat_float(std::numeric_limits<float>::infinity());
+    return choose(larger(most, farthest) <= reach, sum, splat_float(std::numeric_limits<float>::infinity()));
   }
 
   // Which triangles the lines leave by. `least`: the smallest magnitude of a side. `entry_behind`: edges of the face
@@ -125,7 +125,7 @@ struct CellWalks8 {
     const auto ask = [&](const LineCorner8& a, const LineCorner8& b) {
       const Float8 s = side(a, b);
       least = smaller(least, magnitude(s));
-      return reinterpret_cast<Mask8>(s);
+      return bits_as<Mask8>(s);
     };
     Mask8 entry[4];
     Mask8 lateral[4];
@@ -175,7 +175,7 @@ struct CellWalks8 {
     Mask8 by[4];
     for (unsigned i = 0; i < 4; ++i) by[i] = lanes_with(lateral, i);
     exit = splat_int(8);
-    for (unsigned i = 0; i < 4; ++i) exit = by[i] ? splat_int(2 * static_cast<int>(i)) : exit;
+    for (unsigned i = 0; i < 4; ++i) exit = choose(by[i], splat_int(2 * static_cast<int>(i)), exit);
     exit -= lanes_with(in_any_of_4(left.at_far_edge) | left.far_30, 0);
     const LineCorner8 a[4] = {near[0], near[1], near[2], near[3]};
     near[0] = next_corner(by, far[0], a[0], a[1], a[2], a[3]);

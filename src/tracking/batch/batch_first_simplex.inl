@@ -34,7 +34,7 @@ struct FirstBlock {
     inside = 0;
   }
   [[nodiscard]] FacetSigns4 signs_of(std::uint32_t k) const { return FacetSigns4(signs[k]); }
-  void store(const Mask4& of_four, std::uint32_t k) { *reinterpret_cast<UnalignedMask4*>(&signs[k]) = of_four; }
+  void store(const Mask4& of_four, std::uint32_t k) { store_bits(of_four, &signs[k]); }
 };
 
 // Four in a row from i on.

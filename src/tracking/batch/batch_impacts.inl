@@ -87,7 +87,7 @@ class WallImpact4 {
     for (unsigned i = 0; i < 4; ++i) {
       const Mask4 is_wall = facet_ == splat_bits(i);
       others &= is_wall | (d.value[i] > d.bound);
-      off = is_wall ? d.value[i] : off;
+      off = choose(is_wall, d.value[i], off);
     }
     const Vec3x4& a = corner_[0];
     const Vec3x4 magnitudes = larger(magnitude(a), magnitude(point_));
@@ -139,8 +139,8 @@ class WallImpact4 {
              height.exceed(Determinant::for_fraction) &
              BoundedProducts::exceed(whole, permanent, Determinant::for_fraction);
     const Double4 t = height.value / whole;
-    const Double4 from_0 = t < 0.0 ? Double4{} : t;
-    fraction_ = from_0 > 1.0 ? splat(1.0) : from_0;
+    const Double4 from_0 = choose(t < 0.0, Double4{}, t);
+    fraction_ = choose(from_0 > 1.0, splat(1.0), from_0);
     point_ = without_tiny(p + way * fraction_);
   }
 

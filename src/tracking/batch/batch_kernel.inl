@@ -79,9 +79,9 @@ bool all_between(const double* x, std::size_t count, double low, double high) {
   std::size_t i = 0;
 #pragma GCC unroll 4
   for (; i + 4 <= count; i += 4) {
-    const Double4 numbers = *reinterpret_cast<const UnalignedDouble4*>(x + i);
+    const Double4 numbers = load_doubles(x + i);
     const Double4 m = magnitude(numbers);
-    between &= ((m >= low) & (m <= high)) | (reinterpret_cast<Mask4>(numbers) == splat_bits(0));
+    between &= ((m >= low) & (m <= high)) | (bits_as<Mask4>(numbers) == splat_bits(0));
   }
   bool rest = true;
   for (; i < count; ++i)

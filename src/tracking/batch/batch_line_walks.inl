@@ -22,12 +22,8 @@ DARTCAST_BEGIN_KERNEL
 namespace dartcast::detail::DARTCAST_SIMD {
 namespace {
 
-inline Double4 with_signs(const Double4& x, const Mask4& signs) {
-  return reinterpret_cast<Double4>(reinterpret_cast<Mask4>(x) ^ signs);
-}
-inline Mask4 sign_bits(const Double4& x) {
-  return reinterpret_cast<Mask4>(x) & splat_bits(static_cast<long long>(1ULL << 63U));
-}
+inline Double4 with_signs(const Double4& x, const Mask4& signs) { return bits_as<Double4>(bits_as<Mask4>(x) ^ signs); }
+inline Mask4 sign_bits(const Double4& x) { return bits_as<Mask4>(x) & splat_bits(static_cast<long long>(1ULL << 63U)); }
 
 // The order of coordinates in which the axis where a line is longest comes last: (y, z, x), (z, x, y) or (x, y, z).
 struct AxisOrder4 {
@@ -42,9 +38,10 @@ struct AxisOrder4 {
   }
 
   [[nodiscard]] [[gnu::always_inline]] Vec3x4 order(const Vec3x4& a) const {
-    const Mask4 x = x_last < 0;  // the blend itself takes the sign
-    const Mask4 y = y_last < 0;
-    return {x ? a.y : y ? a.z : a.x, x ? a.z : y ? a.x : a.y, x ? a.x : y ? a.y : a.z};
+    const Mask4 x = by_sign(x_last);
+    const Mask4 y = by_sign(y_last);
+    return {choose(x, a.y, choose(y, a.z, a.x)), choose(x, a.z, choose(y, a.x, a.y)),
+            choose(x, a.x, choose(y, a.y, a.z))};
   }
 };
 
@@ -221,9 +218,9 @@ struct LineWalks4 {
     corner[0] = choose(slot0, d, corner[0]);
     corner[1] = choose(slot1, d, corner[1]);
     corner[2] = choose(slot2, d, corner[2]);
-    edge_side[0] = slot1 ? c : slot2 ? -b : edge_side[0];
-    edge_side[1] = slot2 ? a : slot0 ? -c : edge_side[1];
-    edge_side[2] = slot0 ? b : slot1 ? -a : edge_side[2];
+    edge_side[0] = choose(slot1, c, choose(slot2, -b, edge_side[0]));
+    edge_side[1] = choose(slot2, a, choose(slot0, -c, edge_side[1]));
+    edge_side[2] = choose(slot0, b, choose(slot1, -a, edge_side[2]));
     near_end = lanes_set(larger(larger(corner[0].z, corner[1].z), corner[2].z) >= line.length);
   }
 

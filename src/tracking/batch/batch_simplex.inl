@@ -108,8 +108,8 @@ struct BatchDeterminants {
     value[2] = dot(relative[3], n01);
     value[3] = -dot(relative[2], n01);
     const Mask4 applies = (largest(extent) <= largest_decided_extent) & (smallest(extent) >= smallest_extent);
-    bound =
-        applies ? determinant_error * (extent.x * extent.y * extent.z) : splat(std::numeric_limits<double>::infinity());
+    bound = choose(applies, determinant_error * (extent.x * extent.y * extent.z),
+                   splat(std::numeric_limits<double>::infinity()));
   }
 
   [[nodiscard]] Double4 volume6() const { return (value[0] + value[1]) + (value[2] + value[3]); }
@@ -162,10 +162,10 @@ struct BatchDeterminants {
   BatchDeterminants d;
   for (unsigned i = 0; i < 4; ++i) {
     d.relative[i] = choose(m, a.relative[i], b.relative[i]);
-    d.value[i] = m ? a.value[i] : b.value[i];
+    d.value[i] = choose(m, a.value[i], b.value[i]);
   }
   d.extent = choose(m, a.extent, b.extent);
-  d.bound = m ? a.bound : b.bound;
+  d.bound = choose(m, a.bound, b.bound);
   return d;
 }
 

@@ -179,7 +179,7 @@ class Rounds {
     const Vec3x4 q = b.targets_of(
         {{walks[i.at[0]].particle, walks[i.at[1]].particle, walks[i.at[2]].particle, walks[i.at[3]].particle}});
     const BatchDeterminants& d = *new (&determinants_[k / 4]) BatchDeterminants(v, q);
-    *reinterpret_cast<UnalignedMask4*>(&signs_[k]) = d.signs(v, q);
+    store_bits(d.signs(v, q), &signs_[k]);
     if constexpr (!moved) targets_[k / 4] = q;
   }
 

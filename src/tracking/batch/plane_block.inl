@@ -39,7 +39,7 @@ struct PlaneDeterminants4 {
     extent.y = larger(larger(magnitude(r[0].y), magnitude(r[1].y)), magnitude(r[2].y));
     const Mask4 applies =
         (larger(extent.x, extent.y) <= largest_decided_extent) & (smaller(extent.x, extent.y) >= smallest_extent);
-    bound = applies ? plane_error * (extent.x * extent.y) : splat(std::numeric_limits<double>::infinity());
+    bound = choose(applies, plane_error * (extent.x * extent.y), splat(std::numeric_limits<double>::infinity()));
   }
 
   [[nodiscard]] Double4 sum() const { return (value[0] + value[1]) + value[2]; }
@@ -87,7 +87,7 @@ inline Mask4 surely_one_slice(const Triangles4& v, const Triangles4& w, const Pl
 
 // As carried(): where the triangles carry points that had these determinants.
 inline Vec2x4 carry(const PlaneDeterminants4& was, const Triangles4& now) {
-  const auto not_negative = [](const Double4& c) { return c < 0.0 ? Double4{} : c; };
+  const auto not_negative = [](const Double4& c) { return choose(c < 0.0, Double4{}, c); };
   const Double4 c[3] = {not_negative(was.value[0]), not_negative(was.value[1]), not_negative(was.value[2])};
   const Double4 sum = (c[0] + c[1]) + c[2];
   const Double4 w[3] = {c[0] / sum, c[1] / sum, c[2] / sum};
