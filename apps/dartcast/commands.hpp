@@ -14,6 +14,7 @@ void write_noting_loss(const MeshData& mesh, const std::string& file);
 void add_run(CLI::App& app, int& status);
 void add_report(CLI::App& app, int& status);
 void add_view(CLI::App& app, int& status);
+void add_live(CLI::App& app, int& status);
 void add_check(CLI::App& app, int& status);
 void add_info(CLI::App& app, int& status);
 void add_convert(CLI::App& app, int& status);

@@ -39,6 +39,7 @@ int main(int argc, char** argv) {
   verbs::add_run(app, status);
   verbs::add_report(app, status);
   verbs::add_view(app, status);
+  verbs::add_live(app, status);
   verbs::add_check(app, status);
   verbs::add_info(app, status);
   verbs::add_convert(app, status);

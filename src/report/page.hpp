@@ -11,6 +11,7 @@ struct Page {
   std::string subtitle;              ///< plain text
   std::string body;                  ///< HTML
   std::vector<std::string> scripts;  ///< elements of scripts and data at the end, whole
+  bool runs_engine = false;          ///< the policy lets scripts make WebAssembly and workers
 };
 
 /// The page's content security policy allows no request. Light and dark follow the system.

@@ -8,22 +8,18 @@
 
 namespace dartcast {
 
-namespace {
-
 // JSON in an element of a script: "<" could end it.
-std::string as_script(const std::string& json) {
-  std::string out;
-  out.reserve(json.size());
+std::string json_script(const std::string& json) {
+  std::string out = "<script type=\"application/json\" id=\"meta\">";
+  out.reserve(json.size() + 64);
   for (const char c : json) {
     if (c == '<')
       out += "\\u003c";
     else
       out += c;
   }
-  return out;
+  return out + "</script>\n";
 }
-
-}  // namespace
 
 std::string viewer_page(const ViewerPage& page, const ViewerData& data) {
   Page whole;
@@ -34,8 +30,7 @@ std::string viewer_page(const ViewerPage& page, const ViewerData& data) {
       "<p class=\"fallback\">This is a still picture: the scene in 3D needs JavaScript and WebGL.</p></section>\n";
   for (const std::string& note : data.taken.notes) whole.body += "<p class=\"notes\">" + html(note) + "</p>\n";
   whole.body += page.body;
-  whole.scripts.push_back("<script type=\"application/json\" id=\"meta\">" + as_script(data.description) +
-                          "</script>\n");
+  whole.scripts.push_back(json_script(data.description));
   for (std::size_t i = 0; i < data.blocks.size(); ++i)
     whole.scripts.push_back(fmt::format("<script type=\"text/plain\" id=\"b{}\">{}</script>\n", i, data.blocks[i]));
   whole.scripts.push_back(fmt::format("<script type=\"module\">{}</script>\n", viewer_program()));

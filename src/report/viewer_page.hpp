@@ -13,6 +13,9 @@ struct ViewerPage {
   std::string body;      ///< HTML, below the view
 };
 
+/// The element of a page that holds what the viewer shows, in JSON.
+std::string json_script(const std::string& json);
+
 std::string viewer_page(const ViewerPage& page, const ViewerData& data);
 
 }  // namespace dartcast

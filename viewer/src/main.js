@@ -5,6 +5,7 @@ import { Contacts, Selection } from './selection.js';
 import { element } from './dom.js';
 import { shortNumber } from './colours.js';
 import { Exports } from './exports.js';
+import { Live } from './live.js';
 import { Overlay } from './overlay.js';
 import { Panel } from './panel.js';
 import { ParticleCloud } from './particles.js';
@@ -211,11 +212,11 @@ async function main() {
   const view = document.getElementById('view');
   try {
     const data = JSON.parse(document.getElementById('meta').textContent);
-    await Viewer.start(view, data);
+    await (data.engine ? Live.start(view, data, api) : Viewer.start(view, data));
   } catch (error) {
     // The still picture stays, and says why.
     const text = view.querySelector('.fallback');
-    if (text) text.textContent = `This is a still picture: ${error.message}.`;
+    if (text) text.textContent = `${view.querySelector('.picture') ? 'This is a still picture' : 'The scene cannot be shown'}: ${error.message}.`;
     else view.append(element('p', { class: 'fallback' }, `The scene cannot be shown: ${error.message}.`));
     api.failed = error.message;
   }

@@ -60,12 +60,15 @@ export class Panel {
       particles.colourBy(name);
       this.changeParticles();
     });
-    const size = slider('Size of the points', { min: -2, max: 2, step: 0.1, value: 0 }, (v) => {
-      particles.scale = 2 ** v;
+    return [element('h2', {}, 'Particles'), element('label', {}, 'colour by', this.quantity), this.legend, this.limits,
+      element('label', {}, 'size', this.sizeSlider()), checkbox('tails of all', false, (on) => { particles.hasTails = on; this.stage.draw(); })];
+  }
+
+  sizeSlider() {
+    return slider('Size of the points', { min: -2, max: 2, step: 0.1, value: Math.log2(this.particles.scale) }, (v) => {
+      this.particles.scale = 2 ** v;
       this.stage.draw();
     });
-    return [element('h2', {}, 'Particles'), element('label', {}, 'colour by', this.quantity), this.legend, this.limits,
-      element('label', {}, 'size', size), checkbox('tails of all', false, (on) => { particles.hasTails = on; this.stage.draw(); })];
   }
 
   changeParticles() {

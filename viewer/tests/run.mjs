@@ -6,6 +6,7 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { launch, withoutWebGL } from './browser.mjs';
+import { checkLive, checkLiveFallback } from './live_checks.mjs';
 import { checkControls } from './control_checks.mjs';
 import { checkFallback, checkReport } from './page_checks.mjs';
 
@@ -47,14 +48,25 @@ function makeReports(command, folder, work) {
   });
 }
 
-/** Checks the reports that `makeFiles` gives. Returns how many failed. */
-async function check(makeFiles) {
+/** The page of a live scene; nothing where the engine for browsers is not built. */
+function makeLivePage(command, folder, work) {
+  const page = join(work, 'live.html');
+  const done = spawnSync(command, ['live', join(folder, 'live.toml'), '-o', page], { encoding: 'utf8' });
+  if (done.status === 0) return page;
+  if (!done.stderr.includes('./dev wasm')) throw new Error(`live: ${done.stderr}`);
+  console.log('left out: a live page: the engine is not built (./dev wasm)');
+  return null;
+}
+
+/** Checks the reports that `makeFiles` gives, and a live page. Returns how many failed. */
+async function check(makeFiles, makeLive) {
   const { browser, missing } = await launch();
   if (missing) {
     console.log(`left out: the reports in a browser: ${missing} is missing`);
     return 0;
   }
   const files = makeFiles();
+  const live = makeLive();
   let failed = 0;
   const report = async (name, test) => {
     try {
@@ -68,20 +80,22 @@ async function check(makeFiles) {
   // The scheme makes the same difference in every scene.
   for (const [i, file] of files.entries()) await report(file, () => checkReport(browser, file, i === 0 ? ['light', 'dark'] : ['light']));
   for (const scheme of ['light', 'dark']) await report(`the controls of ${files[0]}, ${scheme}`, () => checkControls(browser, files[0], scheme));
+  if (live) await checkLive(browser, live, report);
   await browser.close();
   const { browser: blind } = await launch(withoutWebGL);
   await report(`${files[0]} without WebGL`, () => checkFallback(blind, files[0]));
+  if (live) await report(`${live} without WebGL`, () => checkLiveFallback(blind, live));
   await blind.close();
   return failed;
 }
 
 const [first, second] = process.argv.slice(2);
 if (first.endsWith('.html')) {
-  process.exitCode = await check(() => process.argv.slice(2));
+  process.exitCode = await check(() => process.argv.slice(2), () => null);
 } else {
   const work = mkdtempSync(join(tmpdir(), 'dartcast_viewer_'));
   try {
-    process.exitCode = await check(() => [...makeReports(first, second, work), ...makeSurfaceReport(first, second, work)]);
+    process.exitCode = await check(() => [...makeReports(first, second, work), ...makeSurfaceReport(first, second, work)], () => makeLivePage(first, second, work));
   } finally {
     rmSync(work, { recursive: true });
   }

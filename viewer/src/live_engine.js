@@ -1,0 +1,33 @@
+// The page's side of the engine: it asks the worker, which answers in the order of the questions.
+export class Engine {
+  constructor(program, onProgress) {
+    this.waiting = new Map();
+    this.asked = 0;
+    this.worker = new Worker(URL.createObjectURL(new Blob([program], { type: 'text/javascript' })));
+    this.worker.onmessage = ({ data: { id, value, error, progress } }) => {
+      if (progress) return onProgress(progress);
+      const { resolve, reject } = this.waiting.get(id);
+      this.waiting.delete(id);
+      return error === undefined ? resolve(value) : reject(new Error(error));
+    };
+    this.worker.onerror = (e) => this.fail(e.message);
+  }
+
+  /** What cannot be answered any more is refused. */
+  fail(message) {
+    for (const { reject } of this.waiting.values()) reject(new Error(message || 'the engine has stopped'));
+    this.waiting.clear();
+  }
+
+  ask(what, argument, transfer = []) {
+    const id = this.asked++;
+    return new Promise((resolve, reject) => {
+      this.waiting.set(id, { resolve, reject });
+      this.worker.postMessage({ id, what, argument }, transfer);
+    });
+  }
+}
+
+/** Whether this browser can run the engine: a module of WebAssembly with an instruction of SIMD. */
+export const hasSimd = () => typeof WebAssembly === 'object' && WebAssembly.validate(new Uint8Array([
+  0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11]));
