@@ -71,7 +71,7 @@ export class Live {
     this.walls.update(walls);
     this.panel = new LivePanel(this, { frame: () => this.frame(), wholeScreen: () => (document.fullscreenElement ? document.exitFullscreen() : view.requestFullscreen()) });
     this.progress = element('p', { class: 'loading', 'aria-live': 'polite' });
-    const over = [this.progress, ...this.overlay.elements, this.tools.line, this.bar.element, this.tip.element, this.hasCatheter ? steeringPad(this.input) : null];
+    const over = [this.progress, this.tip.element, ...this.overlay.elements, this.tools.line, this.bar.element, this.hasCatheter ? steeringPad(this.input) : null];
     view.replaceChildren(element('div', { class: 'stage' }, this.stage.canvas, ...over.filter((e) => e)), this.panel.element, this.clock.element);
     view.classList.add('live', 'engine');
     this.stage.resize();

@@ -1,7 +1,7 @@
 // The parts of a live scene: what the report's viewer draws of frames, drawn of the one moment that the engine gives.
 import { AdditiveBlending, BufferAttribute, BufferGeometry, Group, NormalBlending, Points, ShaderMaterial, Vector3 } from 'three';
 import { Box } from './decode.js';
-import { linear, pageColours } from './colours.js';
+import { pageColours } from './colours.js';
 import { ParticleCloud } from './particles.js';
 import { Solids } from './solids.js';
 import { Walls } from './walls.js';
@@ -133,6 +133,18 @@ export class LiveSolids extends Solids {
       solid.present = [points.length / 3, points.length / 3];
     });
     this.show(0);
+  }
+
+  /** A catheter is seen through all particles, so that it can be steered among them. */
+  makeObject(solid) {
+    const object = super.makeObject(solid);
+    if (solid.kind === 'catheter') Object.assign(object.material, { depthTest: false, transparent: true });
+    object.renderOrder = 2;
+    return object;
+  }
+
+  colour(solid) {
+    return solid.kind === 'catheter' ? pageColours().text : super.colour(solid);
   }
 
   get catheters() {

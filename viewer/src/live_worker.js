@@ -40,7 +40,7 @@ const answers = {
       box[1][i % 3] = Math.max(box[1][i % 3], x);
     });
     middle = [0, 1, 2].map((k) => (box[0][k] + box[1][k]) / 2);
-    return { ...moment(), box, dimension: 3, patches: ['', 'wall', 'inlet'], gravity: scene.motion.gravity ?? [0, 0, 0], offers: ['cut', 'tie', 'pull'] };
+    return { ...moment(), box, dimension: 3, patches: ['', 'wall', 'inlet', 'outlet_left', 'outlet_right', 'outer'], gravity: scene.motion.gravity ?? [0, 0, 0], offers: ['cut', 'tie', 'pull'] };
   },
   run({ steps, steer }) {
     const began = performance.now();
