@@ -30,9 +30,9 @@ export class Live {
     document.head.append(element('style', {}, css));
     live.progress = view.querySelector('.fallback');
     live.say('Unpacking the engine …');
-    const [program, wasm] = await Promise.all([text(data.engine.program), readBlock(data.engine.wasm)]);
-    live.engine = new Engine(program, (t) => live.say(t));
-    const first = await live.engine.ask('start', { wasm, scene: data.scene, mesh: data.mesh === undefined ? null : await readBlock(data.mesh) }, [wasm.buffer]);
+    live.program = await text(data.engine.program);
+    live.engine = new Engine(live.program, (t) => live.say(t));
+    const first = await live.engine.ask('start', await live.ofScene());
     live.layOut(first);
     live.take(first);
     live.stage.frame(live.walls.visiblePoints());
@@ -41,13 +41,19 @@ export class Live {
     live.loop();
   }
 
-  can(mode) {
-    return mode === 'look' || (this.stage.dimension === 3 && this.offers.includes(mode));
+  /** What an engine needs to start. */
+  async ofScene() {
+    const names = Object.keys(this.data.files);
+    const blocks = await Promise.all([this.data.engine.wasm, ...Object.values(this.data.files)].map(readBlock));
+    return { wasm: blocks[0], scene: this.data.scene, files: Object.fromEntries(names.map((name, i) => [name, blocks[i + 1]])) };
   }
 
-  layOut({ box, dimension, patches, gravity, offers, solids, count, walls }) {
+  can(mode) {
+    return mode === 'look' || this.stage.dimension === 3;
+  }
+
+  layOut({ box, dimension, patches, gravity, solids, count, walls }) {
     const { view } = this;
-    this.offers = offers;
     this.hasCatheter = solids.some((s) => s.kind === 'catheter');
     this.stage = new Stage(new LiveBox(box), dimension, gravity);
     this.walls = new LiveWalls(this.stage.box, dimension, patches);
@@ -222,11 +228,15 @@ export class Live {
     return failed;
   }
 
-  /** Runs the scene anew, untouched, for as many steps as a native program has. */
+  /** Another engine runs the scene, untouched, for as many steps as a native program has. */
   async compare() {
     const { native } = this.data;
     this.prove(`Running ${native.steps} steps from the start …`);
-    const { hash } = await this.engine.ask('compare', { steps: native.steps });
+    const other = new Engine(this.program, () => {});
+    await other.ask('start', await this.ofScene());
+    await other.ask('run', { steps: native.steps, steer: null });
+    const { hash } = await other.ask('hash');
+    other.stop();
     const isSame = hash === native.hash;
     this.prove(isSame ? 'The same bits as natively. ' : 'Other bits than natively: please report this. ', `After ${native.steps} steps from the start, here: `, element('code', {}, hash),
       ', natively: ', element('code', {}, native.hash));

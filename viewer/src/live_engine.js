@@ -19,11 +19,15 @@ export class Engine {
     this.waiting.clear();
   }
 
-  ask(what, argument, transfer = []) {
+  stop() {
+    this.worker.terminate();
+  }
+
+  ask(what, argument) {
     const id = this.asked++;
     return new Promise((resolve, reject) => {
       this.waiting.set(id, { resolve, reject });
-      this.worker.postMessage({ id, what, argument }, transfer);
+      this.worker.postMessage({ id, what, argument });
     });
   }
 }

@@ -125,13 +125,19 @@ export class LiveSolids extends Solids {
     Object.assign(this, { box, object: new Group(), all: [] });
   }
 
-  /** Bodies and catheters: kind, name, radius and points. */
+  /** Bodies, tools and catheters: kind, name, points, perhaps triangles. They come and go. */
   update(solids) {
-    solids.forEach(({ kind, name, radius, points, triangles }, place) => {
-      const solid = this.all[place] ??= { kind, name, radius, place, triangles, items: points.length / 3, series: new Moment(points) };
-      solid.series.values = points;
-      solid.present = [points.length / 3, points.length / 3];
+    const before = this.all;
+    this.all = solids.map((given, place) => {
+      const solid = before.find((b) => b.kind === given.kind && b.name === given.name) ?? { place, radius: 0, items: given.points.length / 3, series: new Moment() };
+      Object.assign(solid, given, { present: Array(2).fill(given.points.length / 3) });
+      solid.series.values = given.points;
+      return solid;
     });
+    for (const { object } of before.filter((b) => !this.all.includes(b))) {
+      object.geometry.dispose();
+      this.object.remove(object);
+    }
     this.show(0);
   }
 

@@ -26,7 +26,7 @@ void main() {
 
 export class TipCamera {
   constructor(stage, walls, particles, solids) {
-    Object.assign(this, { stage, walls, particles, solids, up: new Vector3(0, 0, 1) });
+    Object.assign(this, { stage, walls, particles, solids });
     this.camera = new PerspectiveCamera(78, 1, stage.box.radius / 2000, 4 * stage.box.radius);
     this.scene = new Scene();
     this.scene.background = new Color(0x0c0706);
@@ -50,26 +50,20 @@ export class TipCamera {
     this.scene.add(this.mesh);
   }
 
-  /** Looks along the last links; what is up stays up while the tip bends. */
-  place(points) {
-    const last = points.length / 3 - 1;
-    const tip = new Vector3().fromArray(points, 3 * last);
-    const direction = tip.clone().sub(new Vector3().fromArray(points, 3 * Math.max(0, last - 3))).normalize();
-    this.up.addScaledVector(direction, -this.up.dot(direction));
-    if (this.up.lengthSq() < 1e-6) this.up.set(direction.y, direction.z, direction.x).addScaledVector(direction, -direction.dot({ x: direction.y, y: direction.z, z: direction.x }));
-    this.up.normalize();
-    this.camera.up.copy(this.up);
-    this.camera.position.copy(tip);
-    this.camera.lookAt(tip.add(direction));
+  /** Looks along the chain's last frame: who turns the catheter turns the picture. */
+  place({ values }, frame) {
+    this.camera.up.fromArray(frame, 3);
+    this.camera.position.fromArray(values, values.length - 3);
+    this.camera.lookAt(new Vector3().fromArray(frame).add(this.camera.position));
     this.camera.updateMatrixWorld();
   }
 
   draw() {
-    const points = this.solids.catheters[0]?.series.values;
-    this.element.hidden = !points || points.length < 6 || !this.walls.glass;
+    const [catheter] = this.solids.catheters;
+    this.element.hidden = !catheter || !this.walls.glass;
     if (this.element.hidden) return;
     this.takeWalls();
-    this.place(points);
+    this.place(catheter.series, catheter.tip);
     const { renderer, pixelRatio } = this.stage;
     const { offsetLeft: x, offsetTop: top, clientWidth: width, clientHeight: height } = this.element;
     const y = this.stage.height - top - height;

@@ -1,4 +1,4 @@
-// The tools of the pointer: look, cut along a line, tie a vessel, pull at the wall.
+// The tools of the pointer: look, cut along a line, tie a vessel, pull at the wall, drop a barrel.
 import { ArrowHelper, Color, Plane, Vector3 } from 'three';
 import { linear, pageColours, shortLength } from './colours.js';
 import { alongRay, directionAt, hitsOf, middleOf, rayAt } from './live_pick.js';
@@ -8,6 +8,7 @@ export const tools = [
   ['cut', 'Cut', 'Draw a line across the vessel: the tissue along it is cut.'],
   ['tie', 'Tie', 'Touch the vessel: it is tied there, and nothing flows through.'],
   ['pull', 'Pull', 'Take the wall and draw: it is pulled along, and stays there.'],
+  ['drop', 'Drop', 'Touch the vessel: a barrel is put there, and falls.'],
 ];
 
 export class Tools {
@@ -89,6 +90,7 @@ export class Tools {
     this.stop();
     this.stage.draw();
     if (mode === 'tie') this.tie(from.ray);
+    else if (mode === 'drop') this.drop(from.ray);
     else if (Math.hypot(e.offsetX - from.x, e.offsetY - from.y) < 6) this.say(mode === 'cut' ? 'Draw a line to cut along it.' : 'Draw to pull.');
     else if (mode === 'cut') this.cut(from, rayAt(this.stage, e.offsetX, e.offsetY), e);
     else this.act('pull', { point: from.place.toArray(), displacement: by.toArray(), reach: 0.22 * this.stage.box.radius }, `pulled by ${shortLength(by.length())}`);
@@ -105,6 +107,12 @@ export class Tools {
     const normal = along.clone().cross(depth(one).add(along.clone().multiplyScalar(0.5)).sub(this.stage.camera.position)).normalize();
     const width = 0.026 * this.stage.box.radius;
     return this.act('cut', { point: centre.toArray(), normal: normal.toArray(), radius: along.length() / 2, width }, `cut along ${shortLength(along.length())}`);
+  }
+
+  drop(ray) {
+    const middle = middleOf(this.walls, ray);
+    if (!middle) return this.say('There is no vessel under the pointer.');
+    return this.act('drop', { point: middle.place.toArray(), size: 0.4 * middle.half }, 'dropped a barrel');
   }
 
   tie(ray) {

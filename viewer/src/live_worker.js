@@ -1,80 +1,120 @@
-// The worker of a live scene: it owns the engine, answers the page, and keeps checkpoints to undo edits.
+// The worker of a live scene: it owns the engine, answers the page, and keeps checkpoints to undo edits. The page's places are
+// around the middle of the scene, the engine's are not.
 import { load, Simulation } from 'dartcast';
 
-const mostUndone = 8;
-let scene, sim, middle, sent, saved = [], contacts = [];
+const mostUndone = 5; // each checkpoint is a copy of the engine's memory
+const pullTime = 60; // steps that a pull takes
 
-const centred = (values) => Float32Array.from(values, (x, i) => x - middle[i % 3]);
+let given, sim, middle, shownWalls, saved, contacts;
 
-/** What the page draws. Triangles go along after an edit alone. */
+/** Places around the middle, in floats. */
+function centred(places) {
+  const out = new Float32Array(places.length);
+  for (let i = 0; i < out.length; i += 3) {
+    for (let k = 0; k < 3; ++k) out[i + k] = places[i + k] - middle[k];
+  }
+  return out;
+}
+
+const absolute = (place) => place.map((x, k) => x + middle[k]);
+
+function speeds() {
+  const v = sim.velocities();
+  const out = new Float32Array(v.length / 3);
+  for (let i = 0; i < out.length; ++i) out[i] = Math.hypot(v[3 * i], v[3 * i + 1], v[3 * i + 2]);
+  return out;
+}
+
+/** The walls' faces, if an edit has changed them since they were sent last. In the plane they are segments. */
+function newFaces({ version, triangles, patches }) {
+  if (version === shownWalls) return null;
+  shownWalls = version;
+  return { corners: sim.dimension === 2 ? triangles.filter((_, i) => i % 3 < 2) : triangles, patch: Uint16Array.from(patches) };
+}
+
+/** What the page draws. */
 function moment(ms = 0) {
   const walls = sim.walls();
-  const isNew = walls.version !== sent;
-  sent = walls.version;
+  const positions = centred(sim.positions());
   return {
-    time: sim.time, steps: sim.steps, ms, count: sim.positions().length / 3, canUndo: saved.length > 0,
-    positions: centred(sim.positions()), speeds: Float32Array.from(sim.speeds()), contacts: centred(contacts),
-    walls: { points: centred(walls.points), faces: isNew ? { corners: walls.triangles, patch: walls.patches } : null },
-    solids: [{ kind: 'catheter', name: 'c', radius: 5e-4, points: centred(sim.catheter()) }],
+    time: sim.time, steps: sim.steps, ms, count: positions.length / 3, canUndo: saved.length > 0,
+    positions, speeds: speeds(), radii: Float32Array.from(sim.radii()), contacts: centred(contacts),
+    walls: { points: centred(walls.points), faces: newFaces(walls) },
+    solids: sim.solids().map((solid, i) => ({ ...solid, radius: 0, points: centred(solid.points) })),
   };
 }
 
-function edit(make) {
+function make() {
+  sim?.delete();
+  sim = new Simulation(given.scene, { files: given.files });
+  [saved, contacts, shownWalls] = [[], [], null];
+}
+
+/** Changes the scene between two steps, so that it can be undone. */
+function edit(change) {
   const before = sim.checkpoint();
-  make();
+  change();
   saved = [...saved.slice(1 - mostUndone), before];
   contacts = [];
   return moment();
 }
 
+function boxOf(points) {
+  const box = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+  points.forEach((x, i) => {
+    box[0][i % 3] = Math.min(box[0][i % 3], x);
+    box[1][i % 3] = Math.max(box[1][i % 3], x);
+  });
+  return box;
+}
+
 const answers = {
-  async start(given) {
-    await load(given.wasm, (text) => postMessage({ progress: text }));
+  async start(scene) {
+    given = scene;
+    postMessage({ progress: 'Starting the engine …' });
+    await load(given.wasm);
+    delete given.wasm;
     postMessage({ progress: 'Making the scene …' });
-    scene = given.scene;
-    sim = new Simulation(scene);
-    const { points } = sim.walls();
-    const box = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
-    points.forEach((x, i) => {
-      box[0][i % 3] = Math.min(box[0][i % 3], x);
-      box[1][i % 3] = Math.max(box[1][i % 3], x);
-    });
-    middle = [0, 1, 2].map((k) => (box[0][k] + box[1][k]) / 2);
-    return { ...moment(), box, dimension: 3, patches: ['', 'wall', 'inlet', 'outlet_left', 'outlet_right', 'outer'], gravity: scene.motion.gravity ?? [0, 0, 0], offers: ['cut', 'tie', 'pull'] };
+    make();
+    const box = boxOf(sim.walls().points);
+    middle = box[0].map((x, k) => (x + box[1][k]) / 2);
+    return { ...moment(), box, dimension: sim.dimension, patches: sim.patches, gravity: given.scene.motion.gravity ?? [0, 0, 0] };
   },
   run({ steps, steer }) {
     const began = performance.now();
     contacts = [];
+    if (steer) sim.steer(0, steer);
     for (let i = 0; i < steps; ++i) {
-      if (steer) sim.steer(0, steer);
       sim.step();
       contacts.push(...sim.contacts());
     }
     return moment((performance.now() - began) / steps);
   },
-  cut: (disc) => edit(() => sim.cut(disc)),
-  tie: (plane) => edit(() => sim.tie(plane)),
-  pull: (given) => edit(() => sim.pull(given)),
+  cut: ({ point, normal, radius, width }) => edit(() => sim.cut({ surface: 'disc', point: absolute(point), normal, radius, width })),
+  tie: ({ point, normal, reach }) => edit(() => sim.tie({ point: absolute(point), normal, draw: 0.6, reach, duration: pullTime * given.scene.motion.dt })),
+  pull: ({ point, displacement, reach }) => edit(() => sim.pull({ point: absolute(point), displacement, reach, duration: pullTime * given.scene.motion.dt })),
+  drop: ({ point, size }) => edit(() => sim.add({ body: [{
+    name: `barrel${sim.steps}`, generator: 'barrel', radius: 0.75 * size, bulge: 0.2 * size, height: 2 * size, staves: 12, spacing: 0.3 * size, at: absolute(point), rotate: [0.6, 0.3, 0],
+    mass: 1e-4, damping: 20,
+  }] })),
   undo() {
     sim.restore(saved.pop());
-    sent = null;
+    contacts = [];
     return moment();
   },
-  again() { saved = []; sim.delete(); sim = new Simulation(scene); sent = null; return moment(); },
-  memory: () => sim.memory(),
+  again() {
+    make();
+    return moment();
+  },
   hash: () => ({ hash: sim.stateHash(), steps: sim.steps }),
   audit: () => ({ ...sim.audit(), steps: sim.steps }),
-  compare({ steps }) {
-    const other = new Simulation(scene);
-    for (let i = 0; i < steps; ++i) other.step();
-    return { hash: other.stateHash() };
-  },
+  memory: () => sim.memory(),
 };
 
 onmessage = async ({ data: { id, what, argument } }) => {
   try {
     const value = await answers[what](argument);
-    const buffers = value.positions ? [value.positions.buffer] : [];
+    const buffers = value.positions ? [value.positions, value.speeds, value.radii, value.walls.points].map((a) => a.buffer) : [];
     postMessage({ id, value }, buffers);
   } catch (error) {
     postMessage({ id, error: error.message });

@@ -6,8 +6,8 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { launch, withoutWebGL } from './browser.mjs';
-import { checkLive, checkLiveFallback } from './live_checks.mjs';
 import { checkControls } from './control_checks.mjs';
+import { checkLive, checkLiveFallback } from './live_checks.mjs';
 import { checkFallback, checkReport } from './page_checks.mjs';
 
 // Steps of each scene, which has some seven frames then.
