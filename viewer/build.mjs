@@ -16,7 +16,7 @@ for (const name of sources) {
 const result = await build({
   entryPoints: [join(here, 'src/main.js')],
   bundle: true, minify: true, format: 'esm', target: 'es2022', legalComments: 'eof', charset: 'ascii',
-  loader: { '.css': 'text' }, write: false,
+  loader: { '.css': 'text', '.worker.js': 'text' }, write: false,
 });
 // In a page, "</script" would end the program.
 const program = result.outputFiles[0].text.replaceAll('</script', '<\\/script');

@@ -91,7 +91,7 @@ std::string live_page(const fs::path& scene_path, const fs::path& engine) {
       "and "
       "WebAssembly with SIMD.</p></section>\n";
   page.runs_engine = true;
-  std::vector<std::string> blocks = {bytes_of_file(engine / "worker.js"), bytes_of_file(engine / "dartcast.wasm")};
+  std::vector<std::string> blocks = {bytes_of_file(engine / "dartcast.mjs"), bytes_of_file(engine / "dartcast.wasm")};
   for (const std::string& file : files) {
     meta["files"][file] = blocks.size();
     blocks.push_back(bytes_of_file(scene_path.parent_path() / file));

@@ -7,7 +7,7 @@
 namespace dartcast {
 
 /// The page has the scene, the files that it names, the engine and the state hash of a native run. `engine`: a folder with
-/// worker.js and dartcast.wasm, as ./dev wasm makes them. Throws Error if these cannot be read, or the scene names a
+/// dartcast.mjs and dartcast.wasm of the npm package (./dev wasm). Throws Error if these cannot be read, or the scene names a
 /// file that a page cannot hold; else as read_scene(), load_scene_files() and Simulation. Cost: some steps of the scene.
 std::string live_page(const std::filesystem::path& scene, const std::filesystem::path& engine);
 

@@ -3,7 +3,7 @@
 // Phases: unpack and start the engine; lay out the page; then, at the display's pace, show the last moment, draw, ask for the next.
 import { readBlock } from './decode.js';
 import { element } from './dom.js';
-import { Engine, hasSimd } from './live_engine.js';
+import { Engine } from './live_engine.js';
 import { Clock, LivePanel, steeringPad, toolBar } from './live_panel.js';
 import { Flashes, LiveBox, LiveCloud, LiveSolids, LiveWalls } from './live_parts.js';
 import { TipCamera } from './live_tip.js';
@@ -11,6 +11,7 @@ import { Tools, tools } from './live_tools.js';
 import { Overlay } from './overlay.js';
 import { Stage } from './stage.js';
 import css from './viewer.css';
+import worker from './live.worker.js';
 
 const scaleAfter = 12; // steps until the colours take their range
 const fastest = { push: 0.4, turn: 120 }; // of a catheter, m/s and rad/s
@@ -20,9 +21,8 @@ const nextFrame = () => new Promise((next) => requestAnimationFrame(next));
 
 export class Live {
   static async start(view, data, api) {
-    if (!hasSimd()) throw new Error('this browser has no WebAssembly with SIMD');
     const live = new Live();
-    Object.assign(live, { view, data, api, input: { push: 0, turn: 0 }, running: true, pace: 1, spent: [], edits: 0, done: Promise.resolve() });
+    Object.assign(live, { view, data, api, input: { push: 0, turn: 0 }, running: true, isSteered: false, pace: 1, spent: [], edits: 0, done: Promise.resolve() });
     Object.assign(api, { live, viewer: live });
     const began = performance.now();
     // A canvas without WebGL is found before the engine starts.
@@ -30,7 +30,8 @@ export class Live {
     document.head.append(element('style', {}, css));
     live.progress = view.querySelector('.fallback');
     live.say('Unpacking the engine …');
-    live.program = await text(data.engine.program);
+    // The package's program ends with what a worker of a page cannot have.
+    live.program = (await text(data.engine.program)).split('// --- module')[0] + worker;
     live.engine = new Engine(live.program, (t) => live.say(t));
     const first = await live.engine.ask('start', await live.ofScene());
     live.layOut(first);
@@ -64,7 +65,7 @@ export class Live {
     this.stage.observers.push(() => {
       this.walls.sort(this.stage.camera);
       this.particles?.fit(this.stage, this.stage.depthOf(this.walls.opaque));
-      this.flashes.uniforms.pixels.value = 9 * (this.stage.pixelRatio ?? 1);
+      this.flashes.uniforms.pixels.value = 7 * (this.stage.pixelRatio ?? 1);
     });
     this.overlay = new Overlay(this.stage);
     this.tip = new TipCamera(this.stage, this.walls, this.particles, this.solids);
@@ -144,7 +145,8 @@ export class Live {
     this.solids.update(state.solids);
     this.flashes.update(state.contacts);
     if (state.ms > 0) this.spent = [...this.spent.slice(-119), state.ms];
-    if (this.particles && state.steps === scaleAfter) {
+    if (this.particles && !this.isScaled && state.steps >= scaleAfter) {
+      this.isScaled = true;
       this.particles.scaleTo(state.speeds);
       this.panel.refresh();
     }
@@ -173,7 +175,9 @@ export class Live {
   /** The next moment; nothing if the engine refuses to go on, which it says. */
   ask() {
     const { push, turn } = this.input;
-    return this.engine.ask('run', { steps: this.pace, steer: this.hasCatheter ? { push: push * fastest.push, turn: turn * fastest.turn } : null })
+    // Until a hand is on it, the catheter moves as its scene says.
+    this.isSteered ||= push !== 0 || turn !== 0;
+    return this.engine.ask('run', { steps: this.pace, steer: this.isSteered ? { push: push * fastest.push, turn: turn * fastest.turn } : null })
       .catch((error) => {
         this.say(error.message);
         this.running = false;

@@ -60,7 +60,7 @@ export class TipCamera {
 
   draw() {
     const [catheter] = this.solids.catheters;
-    this.element.hidden = !catheter || !this.walls.glass;
+    this.element.hidden = !catheter || catheter.series.values.length < 9 || !this.walls.glass;
     if (this.element.hidden) return;
     this.takeWalls();
     this.place(catheter.series, catheter.tip);

@@ -113,6 +113,7 @@ async function provesItsBits(page, isPhone) {
 /** The heaps of the page and of the engine, at two times. */
 async function keepsItsMemory(page) {
   const heaps = async () => [await inPage(page, () => performance.memory.usedJSHeapSize), (await inPage(page, (live) => live.engine.ask('memory')))];
+  await page.getByLabel('Steps in a picture').selectOption('8');
   const begun = await stepsNow(page);
   await stepsOn(page, begun + 60);
   const [own, engine] = await heaps();

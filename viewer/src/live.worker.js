@@ -1,6 +1,7 @@
 // The worker of a live scene: it owns the engine, answers the page, and keeps checkpoints to undo edits. The page's places are
-// around the middle of the scene, the engine's are not.
-import { load, Simulation } from 'dartcast';
+// around the middle of the scene, the engine's are not. It follows the npm package's program in one script: `load` and
+// `Simulation` are from there.
+/* global load, Simulation */
 
 const mostUndone = 5; // each checkpoint is a copy of the engine's memory
 const pullTime = 60; // steps that a pull takes
@@ -26,21 +27,31 @@ function speeds() {
 }
 
 /** The walls' faces, if an edit has changed them since they were sent last. In the plane they are segments. */
-function newFaces({ version, triangles, patches }) {
+function newFaces({ version, triangles, patches }, dimension) {
   if (version === shownWalls) return null;
   shownWalls = version;
-  return { corners: sim.dimension === 2 ? triangles.filter((_, i) => i % 3 < 2) : triangles, patch: Uint16Array.from(patches) };
+  return { corners: dimension === 2 ? triangles.filter((_, i) => i % 3 < 2) : triangles, patch: Uint16Array.from(patches) };
+}
+
+/** Those without triangles are points or chains. A catheter's tip looks along the first three numbers of `tip`. */
+function solids() {
+  let catheters = 0;
+  return sim.solids().map((solid) => ({
+    ...solid, points: centred(solid.points), triangles: solid.triangles.length > 0 ? solid.triangles : null,
+    tip: solid.kind === 'catheter' ? sim.catheterFrames(catheters++).slice(-9) : null,
+  }));
 }
 
 /** What the page draws. */
 function moment(ms = 0) {
-  const walls = sim.walls();
+  const { time, steps, dimension, patches } = sim.info();
+  const walls = sim.walls(shownWalls);
   const positions = centred(sim.positions());
   return {
-    time: sim.time, steps: sim.steps, ms, count: positions.length / 3, canUndo: saved.length > 0,
+    time, steps, dimension, patches, ms, count: positions.length / 3, canUndo: saved.length > 0,
     positions, speeds: speeds(), radii: Float32Array.from(sim.radii()), contacts: centred(contacts),
-    walls: { points: centred(walls.points), faces: newFaces(walls) },
-    solids: sim.solids().map((solid, i) => ({ ...solid, radius: 0, points: centred(solid.points) })),
+    walls: { points: centred(walls.points), faces: newFaces(walls, dimension) },
+    solids: solids(),
   };
 }
 
@@ -78,23 +89,24 @@ const answers = {
     make();
     const box = boxOf(sim.walls().points);
     middle = box[0].map((x, k) => (x + box[1][k]) / 2);
-    return { ...moment(), box, dimension: sim.dimension, patches: sim.patches, gravity: given.scene.motion.gravity ?? [0, 0, 0] };
+    return { ...moment(), box, gravity: given.scene.motion.gravity ?? [0, 0, 0] };
   },
   run({ steps, steer }) {
     const began = performance.now();
     contacts = [];
-    if (steer) sim.steer(0, steer);
+    const { dt } = given.scene.motion;
+    if (steer) sim.steer(0, { push: steer.push * dt, turn: steer.turn * dt });
     for (let i = 0; i < steps; ++i) {
       sim.step();
-      contacts.push(...sim.contacts());
+      contacts.push(...sim.contacts().points);
     }
     return moment((performance.now() - began) / steps);
   },
   cut: ({ point, normal, radius, width }) => edit(() => sim.cut({ surface: 'disc', point: absolute(point), normal, radius, width })),
   tie: ({ point, normal, reach }) => edit(() => sim.tie({ point: absolute(point), normal, draw: 0.6, reach, duration: pullTime * given.scene.motion.dt })),
-  pull: ({ point, displacement, reach }) => edit(() => sim.pull({ point: absolute(point), displacement, reach, duration: pullTime * given.scene.motion.dt })),
+  pull: ({ point, displacement, reach }) => edit(() => sim.pull({ at: absolute(point), by: displacement, reach, duration: pullTime * given.scene.motion.dt })),
   drop: ({ point, size }) => edit(() => sim.add({ body: [{
-    name: `barrel${sim.steps}`, generator: 'barrel', radius: 0.75 * size, bulge: 0.2 * size, height: 2 * size, staves: 12, spacing: 0.3 * size, at: absolute(point), rotate: [0.6, 0.3, 0],
+    name: `barrel${sim.info().steps}`, generator: 'barrel', radius: 0.75 * size, bulge: 0.2 * size, height: 2 * size, staves: 12, spacing: 0.3 * size, at: absolute(point), rotate: [0.6, 0.3, 0],
     mass: 1e-4, damping: 20,
   }] })),
   undo() {
@@ -106,9 +118,9 @@ const answers = {
     make();
     return moment();
   },
-  hash: () => ({ hash: sim.stateHash(), steps: sim.steps }),
-  audit: () => ({ ...sim.audit(), steps: sim.steps }),
-  memory: () => sim.memory(),
+  hash: () => ({ hash: sim.stateHash(), steps: sim.info().steps }),
+  audit: () => ({ ...sim.audit(), steps: sim.info().steps }),
+  memory: () => sim.checkpoint().memory.length,
 };
 
 onmessage = async ({ data: { id, what, argument } }) => {
