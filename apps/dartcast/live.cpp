@@ -1,4 +1,4 @@
-// The verb live: a page that runs a scene in the browser.
+// The verb live: a page that runs scenes in the browser.
 //
 // Phases: find the engine, which ./dev wasm makes and an installed command has beside it; make the page; write it.
 #include <fmt/format.h>
@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "commands.hpp"
 #include "dartcast/error.hpp"
@@ -21,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct LiveArguments {
-  std::string scene;
+  std::vector<fs::path> scenes;
   std::string page;
   std::string engine;
 };
@@ -29,7 +30,7 @@ struct LiveArguments {
 // Beside an installed command, or in the folder of builds of one that was not.
 fs::path engine_folder() {
   const fs::path program = fs::read_symlink("/proc/self/exe").parent_path();
-  const std::array folders = {program / "../share/dartcast/live", program / "../../wasm/live"};
+  const std::array folders = {program / "../share/dartcast/live", program / "../../wasm/npm"};
   for (const fs::path& folder : folders) {
     if (fs::exists(folder / "dartcast.wasm")) return folder.lexically_normal();
   }
@@ -40,8 +41,8 @@ fs::path engine_folder() {
 }
 
 int live(const LiveArguments& a) {
-  const std::string page = live_page(a.scene, a.engine.empty() ? engine_folder() : fs::path(a.engine));
-  const fs::path file = a.page.empty() ? fs::path(a.scene).stem() += ".html" : fs::path(a.page);
+  const std::string page = live_page(a.scenes, a.engine.empty() ? engine_folder() : fs::path(a.engine));
+  const fs::path file = a.page.empty() ? a.scenes.front().stem() += ".html" : fs::path(a.page);
   const std::string_view whole = page;
   replace_file(file, {&whole, 1});
   fmt::print("{}: {:.1f} MB\n", file.string(), static_cast<double>(page.size()) / 1e6);
@@ -52,9 +53,9 @@ int live(const LiveArguments& a) {
 
 void add_live(CLI::App& app, int& status) {
   const auto a = std::make_shared<LiveArguments>();
-  CLI::App* verb = app.add_subcommand("live", "Make a page that runs a scene in the browser, under your hand.");
-  verb->add_option("SCENE", a->scene, "a scene in TOML")->required()->type_name("FILE");
-  verb->add_option("-o,--output", a->page, "the page (the scene's name with .html)")->type_name("FILE");
+  CLI::App* verb = app.add_subcommand("live", "Make a page that runs scenes in the browser, under your hand.");
+  verb->add_option("SCENE", a->scenes, "scenes in TOML; the page opens with the first")->required()->type_name("FILE");
+  verb->add_option("-o,--output", a->page, "the page (the first scene's name with .html)")->type_name("FILE");
   verb->add_option("--engine", a->engine, "the folder of the engine for browsers (that of the installed command)")
       ->type_name("FOLDER");
   verb->callback([a, &status] { status = live(*a); });

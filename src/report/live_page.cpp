@@ -1,15 +1,15 @@
 // Makes the page of a live scene.
 //
-// Phases: read the scene and the files that it names; run some steps natively, for a state hash to compare with; put scene,
-// files, engine and viewer together, compressed.
+// Phases: read the scenes and the files that they name; run some steps of each natively, for a state hash to compare with; put
+// scenes, files, engine and viewer together, compressed.
 #include "report/live_page.hpp"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 
 #include "dartcast/error.hpp"
@@ -47,19 +47,16 @@ std::string packed_script(const std::string& id, const std::string& bytes) {
   return fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", id, base64(gzipped(bytes)));
 }
 
-// All texts in a scene that name a file, from the scene's folder.
-void add_files(const toml::node& node, const fs::path& folder, std::vector<std::string>& files) {
-  if (const toml::table* table = node.as_table()) {
-    for (const auto& [key, value] : *table) add_files(value, folder, files);
-  } else if (const toml::array* array = node.as_array()) {
-    for (const toml::node& value : *array) add_files(value, folder, files);
-  } else if (const auto* text = node.as_string()) {
-    const fs::path path = folder / text->get();
-    if (fs::is_directory(path) && !text->get().empty() && text->get() != ".")
-      throw Error(fmt::format("{}: a live page cannot hold a folder; convert it with dartcast convert", path.string()));
-    if (fs::is_regular_file(path) && std::find(files.begin(), files.end(), text->get()) == files.end())
-      files.push_back(text->get());
+// Texts in a scene that name a file, from the scene's folder.
+std::vector<std::string> files_in(const std::string& text, const fs::path& folder) {
+  static const std::regex quoted("\"([^\"\n]+)\"|'([^'\n]+)'");
+  std::vector<std::string> files;
+  for (std::sregex_iterator match(text.begin(), text.end(), quoted), end; match != end; ++match) {
+    const std::string name = (*match)[1].matched ? (*match)[1] : (*match)[2];
+    if (fs::is_regular_file(folder / name) && std::find(files.begin(), files.end(), name) == files.end())
+      files.push_back(name);
   }
+  return files;
 }
 
 // The state hash after some steps, or after all that the scene has.
@@ -70,32 +67,37 @@ nlohmann::json native_hash(const Scene& scene) {
   return {{"steps", steps}, {"hash", simulation.state_hash().hex()}};
 }
 
-}  // namespace
-
-std::string live_page(const fs::path& scene_path, const fs::path& engine) {
-  const Scene scene = read_scene(scene_path);
-  const toml::table table = toml::parse(scene.text);
-  std::vector<std::string> files;
-  add_files(table, scene_path.parent_path(), files);
-  std::ostringstream keys;
-  keys << toml::json_formatter{table};
-  nlohmann::json meta = {{"engine", {{"program", 0}, {"wasm", 1}}},
-                         {"scene", nlohmann::json::parse(keys.str())},
+// The scene's part of what the page reads. Its files become blocks.
+nlohmann::json scene_meta(const fs::path& path, std::vector<std::string>& blocks) {
+  const Scene scene = read_scene(path);
+  if (const auto* mesh = std::get_if<fs::path>(&scene.environment.mesh); mesh != nullptr && fs::is_directory(*mesh))
+    throw Error(fmt::format("{}: a live page cannot hold a folder; convert it with dartcast convert", mesh->string()));
+  const Vec3& g = scene.motion.gravity;
+  nlohmann::json meta = {{"name", scene.name},
+                         {"scene", scene.text},
+                         {"gravity", {g.x, g.y, g.z}},
                          {"native", native_hash(scene)},
                          {"files", nlohmann::json::object()}};
+  for (const std::string& file : files_in(scene.text, path.parent_path())) {
+    meta["files"][file] = blocks.size();
+    blocks.push_back(bytes_of_file(path.parent_path() / file));
+  }
+  return meta;
+}
+
+}  // namespace
+
+std::string live_page(std::span<const fs::path> scenes, const fs::path& engine) {
+  std::vector<std::string> blocks = {bytes_of_file(engine / "dartcast.mjs"), bytes_of_file(engine / "dartcast.wasm")};
+  nlohmann::json meta = {{"engine", {{"program", 0}, {"wasm", 1}}}, {"scenes", nlohmann::json::array()}};
+  for (const fs::path& scene : scenes) meta["scenes"].push_back(scene_meta(scene, blocks));
   Page page;
-  page.title = scene.name;
+  page.title = scenes.front().stem().string();
   page.subtitle = "A live scene: the engine runs in this page, with the same bits as natively.";
   page.body =
       "<section id=\"view\" aria-label=\"The scene in 3D\"><p class=\"fallback\">A live scene needs JavaScript, WebGL "
-      "and "
-      "WebAssembly with SIMD.</p></section>\n";
+      "and WebAssembly with SIMD.</p></section>\n";
   page.runs_engine = true;
-  std::vector<std::string> blocks = {bytes_of_file(engine / "dartcast.mjs"), bytes_of_file(engine / "dartcast.wasm")};
-  for (const std::string& file : files) {
-    meta["files"][file] = blocks.size();
-    blocks.push_back(bytes_of_file(scene_path.parent_path() / file));
-  }
   page.scripts.push_back(json_script(meta.dump()));
   for (std::size_t i = 0; i < blocks.size(); ++i)
     page.scripts.push_back(packed_script(fmt::format("b{}", i), blocks[i]));

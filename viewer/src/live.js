@@ -22,7 +22,9 @@ const nextFrame = () => new Promise((next) => requestAnimationFrame(next));
 export class Live {
   static async start(view, data, api) {
     const live = new Live();
-    Object.assign(live, { view, data, api, input: { push: 0, turn: 0 }, running: true, isSteered: false, pace: 1, spent: [], edits: 0, done: Promise.resolve() });
+    // A link to a scene names it behind the #.
+    const chosen = data.scenes.find((s) => `#${s.name}` === window.location.hash) ?? data.scenes[0];
+    Object.assign(live, { view, data, ...chosen, api, input: { push: 0, turn: 0 }, running: true, isSteered: false, scaledAt: -1, pace: 1, spent: [], edits: 0, done: Promise.resolve() });
     Object.assign(api, { live, viewer: live });
     const began = performance.now();
     // A canvas without WebGL is found before the engine starts.
@@ -44,19 +46,19 @@ export class Live {
 
   /** What an engine needs to start. */
   async ofScene() {
-    const names = Object.keys(this.data.files);
-    const blocks = await Promise.all([this.data.engine.wasm, ...Object.values(this.data.files)].map(readBlock));
-    return { wasm: blocks[0], scene: this.data.scene, files: Object.fromEntries(names.map((name, i) => [name, blocks[i + 1]])) };
+    const names = Object.keys(this.files);
+    const blocks = await Promise.all([this.data.engine.wasm, ...Object.values(this.files)].map(readBlock));
+    return { wasm: blocks[0], scene: this.scene, files: Object.fromEntries(names.map((name, i) => [name, blocks[i + 1]])) };
   }
 
   can(mode) {
     return mode === 'look' || this.stage.dimension === 3;
   }
 
-  layOut({ box, dimension, patches, gravity, solids, count, walls }) {
+  layOut({ box, dimension, patches, solids, count, walls }) {
     const { view } = this;
     this.hasCatheter = solids.some((s) => s.kind === 'catheter');
-    this.stage = new Stage(new LiveBox(box), dimension, gravity);
+    this.stage = new Stage(new LiveBox(box), dimension, this.gravity);
     this.walls = new LiveWalls(this.stage.box, dimension, patches);
     this.particles = count > 0 ? new LiveCloud(this.stage.box, patches) : null;
     this.solids = new LiveSolids(this.stage.box);
@@ -145,8 +147,8 @@ export class Live {
     this.solids.update(state.solids);
     this.flashes.update(state.contacts);
     if (state.ms > 0) this.spent = [...this.spent.slice(-119), state.ms];
-    if (this.particles && !this.isScaled && state.steps >= scaleAfter) {
-      this.isScaled = true;
+    if (this.particles && this.scaledAt < scaleAfter && (this.scaledAt < 0 || state.steps >= scaleAfter)) {
+      this.scaledAt = state.steps;
       this.particles.scaleTo(state.speeds);
       this.panel.refresh();
     }
@@ -198,13 +200,11 @@ export class Live {
   /** Edits, one after another, between steps. */
   act(what, argument, said) {
     ++this.edits;
-    const began = performance.now();
     this.say(said ? '…' : '');
     this.done = this.engine.ask(what, argument).then((state) => {
       this.take(state);
-      const ms = performance.now() - began;
-      this.api.editMs = { ...this.api.editMs, [what]: ms };
-      if (said) this.say(`${said[0].toUpperCase()}${said.slice(1)}, in ${ms.toFixed(0)} ms.`);
+      const time = state.editMs === undefined ? '' : `, in ${state.editMs.toFixed(0)} ms`;
+      if (said) this.say(`${said[0].toUpperCase()}${said.slice(1)}${time}.`);
     }).catch((error) => this.say(error.message)).finally(() => {
       --this.edits;
       this.stage.draw();
@@ -234,7 +234,7 @@ export class Live {
 
   /** Another engine runs the scene, untouched, for as many steps as a native program has. */
   async compare() {
-    const { native } = this.data;
+    const { native } = this;
     this.prove(`Running ${native.steps} steps from the start …`);
     const other = new Engine(this.program, () => {});
     await other.ask('start', await this.ofScene());

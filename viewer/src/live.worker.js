@@ -17,6 +17,7 @@ function centred(places) {
   return out;
 }
 
+const dt = () => sim.info().dt;
 const absolute = (place) => place.map((x, k) => x + middle[k]);
 
 function speeds() {
@@ -63,11 +64,12 @@ function make() {
 
 /** Changes the scene between two steps, so that it can be undone. */
 function edit(change) {
+  const began = performance.now();
   const before = sim.checkpoint();
   change();
   saved = [...saved.slice(1 - mostUndone), before];
   contacts = [];
-  return moment();
+  return { ...moment(), editMs: performance.now() - began };
 }
 
 function boxOf(points) {
@@ -89,13 +91,12 @@ const answers = {
     make();
     const box = boxOf(sim.walls().points);
     middle = box[0].map((x, k) => (x + box[1][k]) / 2);
-    return { ...moment(), box, gravity: given.scene.motion.gravity ?? [0, 0, 0] };
+    return { ...moment(), box };
   },
   run({ steps, steer }) {
     const began = performance.now();
     contacts = [];
-    const { dt } = given.scene.motion;
-    if (steer) sim.steer(0, { push: steer.push * dt, turn: steer.turn * dt });
+    if (steer) sim.steer(0, { push: steer.push * dt(), turn: steer.turn * dt() });
     for (let i = 0; i < steps; ++i) {
       sim.step();
       contacts.push(...sim.contacts().points);
@@ -103,8 +104,8 @@ const answers = {
     return moment((performance.now() - began) / steps);
   },
   cut: ({ point, normal, radius, width }) => edit(() => sim.cut({ surface: 'disc', point: absolute(point), normal, radius, width })),
-  tie: ({ point, normal, reach }) => edit(() => sim.tie({ point: absolute(point), normal, draw: 0.6, reach, duration: pullTime * given.scene.motion.dt })),
-  pull: ({ point, displacement, reach }) => edit(() => sim.pull({ at: absolute(point), by: displacement, reach, duration: pullTime * given.scene.motion.dt })),
+  tie: ({ point, normal, reach }) => edit(() => sim.tie({ point: absolute(point), normal, draw: 0.6, reach, duration: pullTime * dt() })),
+  pull: ({ point, displacement, reach }) => edit(() => sim.pull({ at: absolute(point), by: displacement, reach, duration: pullTime * dt() })),
   drop: ({ point, size }) => edit(() => sim.add({ body: [{
     name: `barrel${sim.info().steps}`, generator: 'barrel', radius: 0.75 * size, bulge: 0.2 * size, height: 2 * size, staves: 12, spacing: 0.3 * size, at: absolute(point), rotate: [0.6, 0.3, 0],
     mass: 1e-4, damping: 20,

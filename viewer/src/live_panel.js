@@ -61,13 +61,22 @@ export class LivePanel extends Panel {
     const { live } = this.viewer;
     const row = (...all) => element('p', { class: 'row' }, ...all);
     this.proof = element('output', { class: 'proof', 'aria-live': 'polite' }, 'Every decision is an exact sign. So this page computes the same bits as the program natively.');
-    const buttons = [button('State hash', () => live.hash()), button('Audit', () => live.audit())];
-    if (live.data.native) buttons.push(button('Compare with native', () => live.compare()));
-    const parts = [element('h2', {}, 'The same bits'), row(...buttons), this.proof, element('h2', {}, 'Under your hand'),
+    const buttons = [button('State hash', () => live.hash()), button('Audit', () => live.audit()), button('Compare with native', () => live.compare())];
+    const parts = [...this.scenePart(), element('h2', {}, 'The same bits'), row(...buttons), this.proof, element('h2', {}, 'Under your hand'),
       element('ul', { class: 'help' }, ...tools.filter(([mode]) => live.can(mode)).map(([, name, text]) => element('li', {}, element('b', {}, name), ` ${text}`)))];
-    if (live.hasCatheter) parts[4].prepend(element('li', {}, element('b', {}, 'Steer'), ' ↑ and ↓ push and pull the catheter, ← and → turn it; or use the buttons.'));
+    if (live.hasCatheter) parts.at(-1).prepend(element('li', {}, element('b', {}, 'Steer'), ' ↑ and ↓ push and pull the catheter, ← and → turn it; or use the buttons.'));
     if (this.particles) parts.push(element('h2', {}, 'Particles'), this.legend, element('label', {}, 'size', this.sizeSlider()));
     return parts;
+  }
+
+  /** Another scene starts in a fresh page. */
+  scenePart() {
+    const { data, name } = this.viewer.live;
+    if (data.scenes.length < 2) return [];
+    return [element('label', {}, 'scene', choice('Scene', data.scenes.map((s) => [s.name, s.name]), name, (wanted) => {
+      window.location.hash = wanted;
+      window.location.reload();
+    }))];
   }
 
   filePart() {

@@ -5,7 +5,7 @@ import { alongRay, directionAt, hitsOf, middleOf, rayAt } from './live_pick.js';
 
 export const tools = [
   ['look', 'Look', 'Drag turns the scene; the wheel or two fingers zoom.'],
-  ['cut', 'Cut', 'Draw a line across the vessel: the tissue along it is cut.'],
+  ['cut', 'Cut', 'Draw a line: the tissue along it is cut.'],
   ['tie', 'Tie', 'Touch the vessel: it is tied there, and nothing flows through.'],
   ['pull', 'Pull', 'Take the wall and draw: it is pulled along, and stays there.'],
   ['drop', 'Drop', 'Touch the vessel: a barrel is put there, and falls.'],

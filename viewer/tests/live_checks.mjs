@@ -1,5 +1,8 @@
 // Checks of a live page: it starts, steps, takes every input, undoes, proves its bits, and keeps its memory.
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { createServer } from 'node:http';
+import { join } from 'node:path';
 import { ink, open } from './page_checks.mjs';
 
 const inPage = (page, code, argument) => page.evaluate(([text, given]) => new Function('live', 'given', `return (${text})(live, given)`)(window.dartcastReport.live, given), [code.toString(), argument]);
@@ -152,4 +155,33 @@ export async function checkLiveFallback(browser, file) {
   assert((await page.locator('#view .fallback').textContent()).includes('WebGL is missing'), 'nothing says why there is no scene');
   assert.deepEqual(messages, [], 'the console has messages');
   await page.close();
+}
+
+/** The page in docs/live.md, with the package beside it: it draws, and takes a click. */
+export async function checkExample(browser, docs, npm) {
+  const [, example] = /```html\n([^]*?)```/.exec(readFileSync(docs, 'utf8'));
+  const kinds = { mjs: 'text/javascript', wasm: 'application/wasm' };
+  const server = createServer(({ url }, answer) => {
+    if (url === '/') return answer.setHeader('Content-Type', 'text/html').end(example);
+    if (!url.startsWith('/node_modules/dartcast/')) return answer.writeHead(204).end();
+    const name = url.split('/').at(-1);
+    return answer.setHeader('Content-Type', kinds[name.split('.').at(-1)]).end(readFileSync(join(npm, name)));
+  });
+  await new Promise((next) => server.listen(0, '127.0.0.1', next));
+  const page = await browser.newPage();
+  const messages = [];
+  page.on('console', (m) => messages.push(m.text()));
+  page.on('pageerror', (e) => messages.push(String(e)));
+  await page.goto(`http://127.0.0.1:${server.address().port}/`);
+  const changed = async () => {
+    const before = await page.locator('p').textContent();
+    await page.waitForFunction((old) => ![old, ''].includes(document.querySelector('p').textContent), before, { timeout: 60000 });
+  };
+  await changed();
+  await page.mouse.click(300, 200);
+  await changed();
+  assert(await page.evaluate(() => document.querySelector('canvas').getContext('2d').getImageData(0, 0, 640, 480).data.some((x) => x > 0)), 'nothing is drawn');
+  assert.deepEqual(messages, [], 'the console has messages');
+  await page.close();
+  server.close();
 }

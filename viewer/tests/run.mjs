@@ -5,10 +5,13 @@ import { spawnSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
+import { fileURLToPath } from 'node:url';
 import { launch, withoutWebGL } from './browser.mjs';
 import { checkControls } from './control_checks.mjs';
-import { checkLive, checkLiveFallback } from './live_checks.mjs';
+import { checkExample, checkLive, checkLiveFallback } from './live_checks.mjs';
 import { checkFallback, checkReport } from './page_checks.mjs';
+
+const root = fileURLToPath(new URL('../..', import.meta.url));
 
 // Steps of each scene, which has some seven frames then.
 const scenes = { vessel: 60, surgery: 460, barrel: 60, catheter_left: 120, grains: 60, maze: 60 };
@@ -81,6 +84,7 @@ async function check(makeFiles, makeLive) {
   for (const [i, file] of files.entries()) await report(file, () => checkReport(browser, file, i === 0 ? ['light', 'dark'] : ['light']));
   for (const scheme of ['light', 'dark']) await report(`the controls of ${files[0]}, ${scheme}`, () => checkControls(browser, files[0], scheme));
   if (live) await checkLive(browser, live, report);
+  if (live) await report('the page of docs/live.md', () => checkExample(browser, join(root, 'docs/live.md'), join(root, 'build/wasm/npm')));
   await browser.close();
   const { browser: blind } = await launch(withoutWebGL);
   await report(`${files[0]} without WebGL`, () => checkFallback(blind, files[0]));
