@@ -5,9 +5,11 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "dartcast/generators.hpp"
 #include "dartcast/mesh_files.hpp"
+#include "report/page_reader.hpp"
 #include "support/command.hpp"
 #include "support/foam_case.hpp"
 #include "support/surface_files.hpp"
@@ -221,6 +223,40 @@ TEST_F(SceneVerbs, SourcesAreFieldsOfAnOpenFoamCase) {
   // The case reads its new field, at its cells.
   EXPECT_NE(run("info case/1").out.find("momentum_source"), std::string::npos) << run("info case/1").out;
   expect_failure("lagrangian plain case --sources", 1, "momentum_source");
+}
+
+// The page has the scene, its files, the engine's bytes and the hash of a native run.
+TEST_F(SceneVerbs, ALivePage) {
+  (void)write("dartcast.mjs", "const program = 1;");
+  (void)write("dartcast.wasm", std::string("\0asm</script>", 13));
+  (void)write("part.off", test::off(test::cube_squares));
+  const std::string text =
+      "# </script>\n[environment]\ngenerator = 'box'\ncells = [2, 2, 2]\n[[particles]]\ncount = 20\nvelocity = [1, 2, "
+      "3]\n"
+      "[[body]]\nsurface = 'part.off'\nspacing = 0.5\nscale = 0.5\nat = [0.6, 0.6, 0.6]\n[motion]\ndt = 0.01\nsteps = "
+      "500\n";
+  (void)write("s.toml", text);
+  const Result r = run("live s.toml " + scene("maze.toml") + " --engine .");
+  ASSERT_EQ(r.status, 0) << r.error;
+  const test::PageReader page(folder / "s.html");
+  const auto block = [&](const nlohmann::json& number) {
+    const std::vector<char> bytes = page.block<char>(number);
+    return std::string(bytes.begin(), bytes.end());
+  };
+  EXPECT_EQ(block(page.meta["engine"]["program"]), "const program = 1;");
+  EXPECT_EQ(block(page.meta["engine"]["wasm"]), content(folder / "dartcast.wasm"));
+  const nlohmann::json& first = page.meta["scenes"][0];
+  EXPECT_EQ(first["scene"], text);
+  EXPECT_EQ(block(first["files"]["part.off"]), content(folder / "part.off"));
+  EXPECT_EQ(first["native"]["steps"], 100);
+  const auto summary = nlohmann::json::parse(run("run s.toml --steps 100 --json -o out").out);
+  EXPECT_EQ(first["native"]["hash"], summary["state_hash"]);
+  EXPECT_EQ(page.meta["scenes"][1]["name"], "maze");
+  EXPECT_NE(page.text.find("wasm-unsafe-eval"), std::string::npos);
+  expect_failure("live s.toml --engine nowhere", 1, "nowhere/dartcast.mjs: the file cannot be read");
+  std::filesystem::create_directory(folder / "case");
+  (void)write("case.toml", "[environment]\nmesh = 'case'\n[motion]\ndt = 0.01\n");
+  expect_failure("live case.toml --engine .", 1, "a live page cannot hold a folder");
 }
 
 }  // namespace dartcast::scene_verbs_test
