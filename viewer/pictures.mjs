@@ -8,6 +8,7 @@ import { spawnSync } from 'node:child_process';
 import { existsSync, mkdtempSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
+import { livePicture } from './live_pictures.mjs';
 import { launch } from './tests/browser.mjs';
 import { open } from './tests/page_checks.mjs';
 
@@ -201,6 +202,7 @@ async function main([command, scenes, out, ...names]) {
       else await moving(browser, files[0], picture, join(out, `${picture.name}.webp`), work);
       console.log(`${picture.name}: done`);
     }
+    if (names.length === 0 || names.includes('live')) await livePicture(browser, command, scenes, out, work, run);
   } finally {
     await browser.close();
     rmSync(work, { recursive: true });

@@ -84,7 +84,6 @@ export class Live {
     view.replaceChildren(element('div', { class: 'stage' }, this.stage.canvas, ...over.filter((e) => e)), this.panel.element, this.clock.element);
     view.classList.add('live', 'engine');
     this.stage.resize();
-    this.stage.canvas.style.touchAction = 'none';
     this.bar.choose('look');
     this.listen();
   }

@@ -1,5 +1,5 @@
 // The camera at the tip of a catheter: what it sees, in a corner of the stage.
-import { BufferAttribute, Color, DoubleSide, Mesh, PerspectiveCamera, Scene, ShaderMaterial, Vector3 } from 'three';
+import { BufferAttribute, BufferGeometry, Color, DoubleSide, Mesh, PerspectiveCamera, Scene, ShaderMaterial, Vector3 } from 'three';
 import { element } from './dom.js';
 
 // A lamp sits at the camera: what is near and faces it is bright, what is far is dark. The wall looks like tissue.
@@ -40,7 +40,7 @@ export class TipCamera {
     const { glass, shown, sets, attributes } = this.walls;
     if (!glass || this.of === sets[shown]) return;
     this.of = sets[shown];
-    const geometry = glass.geometry.clone();
+    const geometry = new BufferGeometry();
     for (const name of ['position', 'normal', 'tint']) geometry.setAttribute(name, attributes[name]);
     geometry.setIndex(new BufferAttribute(this.of.shape.index, 1));
     this.mesh?.geometry.dispose();

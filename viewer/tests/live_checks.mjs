@@ -58,7 +58,7 @@ async function steers(page) {
   assert.deepEqual(await inPage(page, (live) => live.input), { push: 0, turn: 0 }, 'an input stays');
 }
 
-async function cutsTiesPulls(page) {
+async function cutsTiesPulls(page, isPhone) {
   const faces = () => inPage(page, (live) => live.walls.sets[0].patch.length);
   const hash = () => inPage(page, (live) => live.hash());
   await page.getByRole('button', { name: 'Pause' }).click();
@@ -80,7 +80,7 @@ async function cutsTiesPulls(page) {
   assert(cut.startsWith('Cut'), cut);
   assert((await faces()) > whole, 'the cut leaves the walls as they were');
   await tool(page, 'Tie');
-  const tied = await afterEdit(page, async () => page.mouse.click(...await onTrunk(page, 0.1)));
+  const tied = await afterEdit(page, async () => (isPhone ? page.touchscreen.tap : page.mouse.click).call(isPhone ? page.touchscreen : page.mouse, ...await onTrunk(page, 0.1)));
   assert(tied.startsWith('Tied'), tied);
   await tool(page, 'Pull');
   const pulled = await afterEdit(page, async () => {
@@ -139,7 +139,7 @@ export async function checkLive(browser, file, report) {
       assert(await ink(page) > 0.002, 'next to nothing is drawn');
       assert((await page.evaluate(() => document.documentElement.scrollWidth)) <= viewport.width, 'the page is wider than the screen');
       await steers(page);
-      await cutsTiesPulls(page);
+      await cutsTiesPulls(page, isPhone);
       await provesItsBits(page, isPhone);
       if (!isPhone) await keepsItsMemory(page);
       assert.deepEqual(messages, [], 'the console has messages');
