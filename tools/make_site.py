@@ -78,6 +78,13 @@ def copy_documents(out: pathlib.Path, examples: dict[pathlib.Path, str]) -> None
         (out / page).write_text(led_to_pages(text, ROOT / name, pathlib.PurePosixPath(page), examples), encoding="utf-8")
 
 
+def link_to_live_scenes(out: pathlib.Path) -> None:
+    """./dev docs makes the page, if the command and the engine for browsers are built."""
+    if all((ROOT / "build" / name).exists() for name in ("wasm/npm/dartcast.wasm", "release/bin/dartcast")):
+        with (out / "live.md").open("a", encoding="utf-8") as page:
+            page.write('\nThe page itself is here: <a href="live_scenes.html">live scenes</a>.\n')
+
+
 def list_decisions(out: pathlib.Path) -> None:
     names = sorted(p.stem for p in (out / "decisions").glob("[0-9]*.md"))
     with (out / "decisions" / "README.md").open("a", encoding="utf-8") as page:
@@ -217,6 +224,7 @@ def main() -> int:
     shutil.copytree(ROOT / "site", out, ignore=shutil.ignore_patterns("Doxyfile"))
     examples = example_pages()
     copy_documents(out, examples)
+    link_to_live_scenes(out)
     list_decisions(out)
     write_examples(out, examples)
     write_cpp(out)
