@@ -13,7 +13,6 @@ import { Stage } from './stage.js';
 import css from './viewer.css';
 import worker from './live.worker.js';
 
-const scaleAfter = 12; // steps until the colours take their range
 const fastest = { push: 0.4, turn: 120 }; // of a catheter, m/s and rad/s
 
 const text = async (block) => new TextDecoder().decode(await readBlock(block));
@@ -55,18 +54,18 @@ export class Live {
     return mode === 'look' || this.stage.dimension === 3;
   }
 
-  layOut({ box, dimension, patches, solids, count, walls }) {
+  layOut({ box, dimension, patches, solids, walls }) {
     const { view } = this;
     this.hasCatheter = solids.some((s) => s.kind === 'catheter');
     this.stage = new Stage(new LiveBox(box), dimension, this.gravity);
     this.walls = new LiveWalls(this.stage.box, dimension, patches);
-    this.particles = count > 0 ? new LiveCloud(this.stage.box, patches) : null;
+    this.particles = new LiveCloud(this.stage.box, patches);
     this.solids = new LiveSolids(this.stage.box);
     this.flashes = new Flashes();
-    for (const part of [this.walls, this.solids, this.flashes, this.particles]) if (part) this.stage.scene.add(part.object);
+    for (const part of [this.walls, this.solids, this.flashes, this.particles]) this.stage.scene.add(part.object);
     this.stage.observers.push(() => {
       this.walls.sort(this.stage.camera);
-      this.particles?.fit(this.stage, this.stage.depthOf(this.walls.opaque));
+      this.particles.fit(this.stage, this.stage.depthOf(this.walls.opaque));
       this.flashes.uniforms.pixels.value = 7 * (this.stage.pixelRatio ?? 1);
     });
     this.overlay = new Overlay(this.stage);
@@ -74,7 +73,7 @@ export class Live {
     this.tools = new Tools({ stage: this.stage, walls: this.walls, act: (what, argument, said) => this.act(what, argument, said), say: (t) => this.say(t) });
     this.bar = toolBar((mode) => this.tools.choose(mode), tools.filter(([mode]) => this.can(mode)));
     this.clock = new Clock({
-      toggle: () => this.toggle(), once: () => this.once(), undo: () => this.undo(), again: () => this.act('again', {}, 'started again'), paceTo: (n) => { this.pace = n; },
+      toggle: () => this.toggle(), once: () => this.once(), undo: () => this.undo(), again: () => this.again(), paceTo: (n) => { this.pace = n; },
     });
     this.live = this; // what the panel asks for
     this.walls.update(walls);
@@ -102,7 +101,7 @@ export class Live {
     window.addEventListener('blur', () => Object.assign(this.input, { push: 0, turn: 0 }));
     window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
       this.stage.colour();
-      for (const part of [this.walls, this.particles, this.flashes]) part?.restyle();
+      for (const part of [this.walls, this.particles, this.flashes]) part.restyle();
       this.panel.refresh();
       this.redraw();
     });
@@ -129,7 +128,7 @@ export class Live {
 
   redraw() {
     this.walls.show(0);
-    this.particles?.show(0);
+    this.particles.show(0);
     this.solids.show(0);
     this.stage.draw();
   }
@@ -142,11 +141,12 @@ export class Live {
   take(state) {
     this.state = state;
     this.walls.update(state.walls);
-    this.particles?.update(state);
+    this.particles.update(state);
     this.solids.update(state.solids);
     this.flashes.update(state.contacts);
     if (state.ms > 0) this.spent = [...this.spent.slice(-119), state.ms];
-    if (this.particles && this.scaledAt < scaleAfter && (this.scaledAt < 0 || state.steps >= scaleAfter)) {
+    // The colours' range follows the speeds, ever more rarely.
+    if (state.count > 0 && state.steps > 2 * this.scaledAt) {
       this.scaledAt = state.steps;
       this.particles.scaleTo(state.speeds);
       this.panel.refresh();
@@ -209,6 +209,11 @@ export class Live {
       this.stage.draw();
     });
     return this.done;
+  }
+
+  again() {
+    this.isSteered = false;
+    return this.act('again', {}, 'started again');
   }
 
   undo() {

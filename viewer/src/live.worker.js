@@ -72,6 +72,13 @@ function edit(change) {
   return { ...moment(), editMs: performance.now() - began };
 }
 
+/** An event that finds nothing to work on changes nothing, and raises no error. */
+function changed(change, refusal) {
+  const before = sim.info().edits;
+  change();
+  if (sim.info().edits === before) throw new Error(refusal);
+}
+
 function boxOf(points) {
   const box = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
   points.forEach((x, i) => {
@@ -103,8 +110,8 @@ const answers = {
     }
     return moment((performance.now() - began) / steps);
   },
-  cut: ({ point, normal, radius, width }) => edit(() => sim.cut({ surface: 'disc', point: absolute(point), normal, radius, width })),
-  tie: ({ point, normal, reach }) => edit(() => sim.tie({ point: absolute(point), normal, draw: 0.6, reach, duration: pullTime * dt() })),
+  cut: ({ point, normal, radius, width }) => edit(() => changed(() => sim.cut({ surface: 'disc', point: absolute(point), normal, radius, width }), 'There is nothing to cut.')),
+  tie: ({ point, normal, reach }) => edit(() => changed(() => sim.tie({ point: absolute(point), normal, draw: 0.6, reach, duration: pullTime * dt() }), 'There is nothing to tie.')),
   pull: ({ point, displacement, reach }) => edit(() => sim.pull({ at: absolute(point), by: displacement, reach, duration: pullTime * dt() })),
   drop: ({ point, size }) => edit(() => sim.add({ body: [{
     name: `barrel${sim.info().steps}`, generator: 'barrel', radius: 0.75 * size, bulge: 0.2 * size, height: 2 * size, staves: 12, spacing: 0.3 * size, at: absolute(point), rotate: [0.6, 0.3, 0],

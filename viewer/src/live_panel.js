@@ -65,8 +65,7 @@ export class LivePanel extends Panel {
     const parts = [...this.scenePart(), element('h2', {}, 'The same bits'), row(...buttons), this.proof, element('h2', {}, 'Under your hand'),
       element('ul', { class: 'help' }, ...tools.filter(([mode]) => live.can(mode)).map(([, name, text]) => element('li', {}, element('b', {}, name), ` ${text}`)))];
     if (live.hasCatheter) parts.at(-1).prepend(element('li', {}, element('b', {}, 'Steer'), ' ↑ and ↓ push and pull the catheter, ← and → turn it; or use the buttons.'));
-    if (this.particles) parts.push(element('h2', {}, 'Particles'), this.legend, element('label', {}, 'size', this.sizeSlider()));
-    return parts;
+    return [...parts, element('h2', {}, 'Particles'), this.legend, element('label', {}, 'size', this.sizeSlider())];
   }
 
   /** Another scene starts in a fresh page. */

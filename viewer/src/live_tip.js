@@ -82,7 +82,6 @@ export class TipCamera {
 
   /** The stage's own points, at sizes for this camera. */
   drawParticles(renderer, height) {
-    if (!this.particles) return;
     const { uniforms, object } = this.particles;
     const own = [uniforms.perUnit.value, uniforms.hidesBehindWalls.value, uniforms.diameter.value];
     uniforms.diameter.value *= 0.4;
