@@ -50,8 +50,6 @@ if(TARGET dartcast_command)
     install(FILES ${completion}/dartcast DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT command)
     install(FILES ${completion}/_dartcast DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/${zsh_folder} COMPONENT command)
   endif()
-  # The engine for browsers, if ./dev wasm has made it.
-  install(FILES build/wasm/npm/dartcast.mjs build/wasm/npm/dartcast.wasm DESTINATION ${CMAKE_INSTALL_DATADIR}/dartcast/live COMPONENT command OPTIONAL)
   install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT command)
 endif()
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT command)

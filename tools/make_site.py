@@ -80,7 +80,7 @@ def copy_documents(out: pathlib.Path, examples: dict[pathlib.Path, str]) -> None
 
 def link_to_live_scenes(out: pathlib.Path) -> None:
     """./dev docs makes the page, if the command and the engine for browsers are built."""
-    if all((ROOT / "build" / name).exists() for name in ("wasm/npm/dartcast.wasm", "release/bin/dartcast")):
+    if all((ROOT / "build" / name).exists() for name in ("wasm/package/dartcast.wasm", "release/bin/dartcast")):
         with (out / "live.md").open("a", encoding="utf-8") as page:
             page.write('\nThe page itself is here: <a href="live_scenes.html">live scenes</a>.\n')
 

@@ -30,7 +30,7 @@ struct LiveArguments {
 // Beside an installed command, or in the folder of builds of one that was not.
 fs::path engine_folder() {
   const fs::path program = fs::read_symlink("/proc/self/exe").parent_path();
-  const std::array folders = {program / "../share/dartcast/live", program / "../../wasm/npm"};
+  const std::array folders = {program / "../share/dartcast", program / "../../wasm/package"};
   for (const fs::path& folder : folders) {
     if (fs::exists(folder / "dartcast.wasm")) return folder.lexically_normal();
   }

@@ -84,7 +84,7 @@ async function check(makeFiles, makeLive) {
   for (const [i, file] of files.entries()) await report(file, () => checkReport(browser, file, i === 0 ? ['light', 'dark'] : ['light']));
   for (const scheme of ['light', 'dark']) await report(`the controls of ${files[0]}, ${scheme}`, () => checkControls(browser, files[0], scheme));
   if (live) await checkLive(browser, live, report);
-  if (live) await report('the page of docs/live.md', () => checkExample(browser, join(root, 'docs/live.md'), join(root, 'build/wasm/npm')));
+  if (live) await report('the page of docs/live.md', () => checkExample(browser, join(root, 'docs/live.md'), join(root, 'build/wasm/package')));
   await browser.close();
   const { browser: blind } = await launch(withoutWebGL);
   await report(`${files[0]} without WebGL`, () => checkFallback(blind, files[0]));
