@@ -26,8 +26,6 @@ export class Live {
     Object.assign(live, { view, data, ...chosen, api, input: { push: 0, turn: 0 }, running: true, isSteered: false, scaledAt: -1, pace: 1, spent: [], edits: 0, done: Promise.resolve() });
     Object.assign(api, { live, viewer: live });
     const began = performance.now();
-    // A canvas without WebGL is found before the engine starts.
-    if (!document.createElement('canvas').getContext('webgl2')) throw new Error('WebGL is missing');
     document.head.append(element('style', {}, css));
     live.progress = view.querySelector('.fallback');
     live.say('Unpacking the engine …');
