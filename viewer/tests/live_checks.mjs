@@ -45,12 +45,14 @@ async function steers(page) {
   const before = await links();
   await page.locator('#view canvas').focus();
   await page.keyboard.down('ArrowUp');
+  assert.equal(await inPage(page, (live) => live.input.push), 1, 'the key pushes nothing');
   await page.waitForFunction((n) => window.dartcastReport.live.solids.catheters[0].series.values.length / 3 > n, before, { timeout: 60000 });
   await page.keyboard.up('ArrowUp');
   const first = await tip();
   const push = await page.getByLabel('Push', { exact: true }).boundingBox();
   await page.mouse.move(push.x + 10, push.y + 10);
   await page.mouse.down();
+  assert.equal(await inPage(page, (live) => live.input.push), 1, 'the button pushes nothing');
   await page.waitForFunction((n) => window.dartcastReport.live.solids.catheters[0].series.values.length / 3 > n + 2, before, { timeout: 60000 });
   await page.mouse.up();
   assert.notDeepEqual(await tip(), first, 'the button does not push');
