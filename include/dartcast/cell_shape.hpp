@@ -103,13 +103,13 @@ struct ShapeKey {
     /// corners in its direction.
     std::vector<std::uint16_t> corners;
     bool has_point = false;  ///< fanned from a Steiner point
-    auto operator<=>(const Face&) const = default;
+    bool operator==(const Face&) const = default;
   };
   std::uint16_t corner_count = 0;
   std::uint16_t apex = 0;  ///< local number of the lowest-numbered corner, if the cell has no Steiner point
   bool has_point = false;  ///< coned from a Steiner point
   std::vector<Face> faces;
-  auto operator<=>(const ShapeKey&) const = default;
+  bool operator==(const ShapeKey&) const = default;
 };
 
 /// The other side of a facet of a simplex: another simplex of the cell, or a triangle of a face's fan.

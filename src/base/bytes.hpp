@@ -51,9 +51,15 @@ class ByteReader {
     std::memcpy(&value, next(sizeof value), sizeof value);
     return value;
   }
+  /// A size in 64 bits.
+  std::size_t take_size() {
+    const auto size = take<std::uint64_t>();
+    if (size > SIZE_MAX) fail();
+    return static_cast<std::size_t>(size);
+  }
   template <class T>
   std::vector<T> take_list() {
-    const auto count = take<std::uint64_t>();
+    const std::size_t count = take_size();
     if (count > bytes_.size() / sizeof(T)) fail();
     std::vector<T> values(count);
     if (count > 0) std::memcpy(values.data(), next(count * sizeof(T)), count * sizeof(T));
@@ -64,9 +70,8 @@ class ByteReader {
   }
   [[nodiscard]] bool at_end() const { return bytes_.empty(); }
   std::string take_text() {
-    const auto size = take<std::uint64_t>();
-    if (size > bytes_.size()) fail();
-    return {next(size), size};
+    const std::size_t size = take_size();
+    return std::string(next(size), size);
   }
 
  private:

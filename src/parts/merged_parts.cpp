@@ -220,7 +220,7 @@ class PartReader {
     for (auto left = in_.take<std::uint64_t>(); left > 0; --left) {
       DataArray& a = arrays.emplace_back();
       a.name = in_.take_text();
-      a.components = in_.take<std::uint64_t>();
+      a.components = in_.take_size();
       a.values = in_.take_list<double>();
     }
   }

@@ -221,7 +221,8 @@ void PartCutter::name_unknown_faces(MeshPart& out) const {
 bool PartCutter::is_outer(std::uint32_t cell, std::span<const std::uint32_t> sorted_face) const {
   const auto faces = boundary_of_cell_[cell];
   return std::any_of(faces.begin(), faces.end(), [&](std::uint32_t f) {
-    return std::ranges::equal(sorted_corners(boundary_.face(f)), sorted_face);
+    const auto corners = sorted_corners(boundary_.face(f));
+    return std::equal(corners.begin(), corners.end(), sorted_face.begin(), sorted_face.end());
   });
 }
 

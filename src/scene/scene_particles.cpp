@@ -162,7 +162,7 @@ ParticlesScene read_particles(TomlTable& t, const std::filesystem::path& folder)
   } else if (inlet.cone || !inlet.patch.empty()) {
     scene.source = inlet;
   } else {
-    scene.source = RandomParticles{count};
+    scene.source = RandomParticles{static_cast<std::size_t>(count)};
   }
   t.finish();
   return scene;

@@ -126,7 +126,7 @@ FixedPointScale scale_of(double largest, std::size_t count, const std::optional<
         sum.largest = std::max(sum.largest, other.largest);
         sum.count += other.count;
       });
-  return {range.largest, range.count};
+  return {range.largest, static_cast<std::size_t>(range.count)};
 }
 
 SizeTable::SizeTable(std::vector<std::uint64_t> sizes, std::span<const Cell> cells,

@@ -231,7 +231,7 @@ class MapBuilder {
       for (auto group = begin; group != end;) {
         auto last = group + 1;
         while (last != end && last->ends == group->ends) ++last;
-        sew_group(std::span<FaceEntry>(group, last));
+        sew_group(std::span<FaceEntry>(&*group, static_cast<std::size_t>(last - group)));
         group = last;
       }
     }

@@ -249,7 +249,7 @@ class PlaneBatch {
   }
 
   const BatchScene& scene_;
-  InstructionSet set_;
+  [[maybe_unused]] InstructionSet set_;  // of x86-64 alone
   const Space<Stored, 3> space_;
   const Vec3* before_;  // null where the scene stands still
   const BatchSteps& steps_;
