@@ -69,18 +69,17 @@ struct FaceRing {
 
 // The section's middle, and the distance of its corners from it, parallel to the plane.
 FaceRing ring_of(const CellComplex& complex, std::span<const Cell> section, const Plane& plane) {
-  std::unordered_set<std::uint32_t> corners;
+  std::unordered_set<std::uint32_t> seen;
+  std::vector<Vec3> flat;  // in the order of coming: that of a set depends on the standard library
   for (const Cell c : section) {
     if (!complex.map().contains(c)) throw InvalidArgument("there is no such cell in the section: an edit replaced it");
     const CellView v = complex.map().view(c);
-    for (std::uint16_t k = 0; k < v.shape().corner_count(); ++k) corners.insert(v.vertex(k).value);
+    for (std::uint16_t k = 0; k < v.shape().corner_count(); ++k) {
+      const Vec3 x = complex.positions()[v.vertex(k).value];
+      if (seen.insert(v.vertex(k).value).second) flat.push_back(x - plane.normal * plane.height(x));
+    }
   }
-  if (corners.empty()) throw InvalidArgument("the section to draw together has no cells");
-  std::vector<Vec3> flat;
-  for (const std::uint32_t v : corners) {
-    const Vec3 x = complex.positions()[v];
-    flat.push_back(x - plane.normal * plane.height(x));
-  }
+  if (flat.empty()) throw InvalidArgument("the section to draw together has no cells");
   FaceRing ring;
   for (const Vec3& x : flat) ring.centre += x * (1.0 / static_cast<double>(flat.size()));
   for (const Vec3& x : flat) ring.radius = std::max(ring.radius, norm(x - ring.centre));
