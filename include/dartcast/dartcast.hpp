@@ -52,3 +52,4 @@
 #include "dartcast/validity.hpp"
 #include "dartcast/vec3.hpp"
 #include "dartcast/vector_field.hpp"
+#include "dartcast/walls.hpp"
