@@ -145,4 +145,8 @@ class Deformation {
   std::size_t size_;
 };
 
+/// Displacements of points for Simulation::pull(): `by` at the place `at`. It fades out at the distance `reach` (m) as (1 - d^2 /
+/// reach^2)^2. Throws InvalidArgument if a number is not finite or the reach is not positive. Cost: linear.
+std::vector<Vec3> pull_around(std::span<const Vec3> positions, const Vec3& at, const Vec3& by, double reach);
+
 }  // namespace dartcast

@@ -297,8 +297,7 @@ class Simulation {
   /// has no face at a free cell any more is closed until it has one. Throws as these, nothing changed. Cost: as these;
   /// linear in the cells if there are inlets.
   SimulationEdit edit(const std::function<void(ComplexEdit&)>& make, OrphanPolicy orphaned = OrphanPolicy::relocate);
-  /// Calls this at the end of each edit.
-  void set_after_edit(AfterEdit after_edit);
+  void set_after_edit(AfterEdit after_edit);  ///< called at the end of each edit
   /// Remeshes cells that are not valid now (dartcast/remeshing.hpp), by edit(). Nothing happens if all are. Cost: a
   /// check of all cells, and the regions repaired.
   RepairReport repair(const RepairOptions& options = {});
@@ -307,15 +306,19 @@ class Simulation {
   /// Pulls vertices along over the next `duration` seconds, on top of the deformation; they stay there. `displacement`:
   /// one per position of the environment. Throws as Deformation::add_pull(), and in the plane if one leaves it.
   void pull(std::span<const Vec3> displacement, double duration);
+  /// Moves a catheter by hand: by this input in each step from the next on, in place of its scene's moves, until the next call.
+  /// A checkpoint does not hold it. Throws as Catheter::step(), and InvalidArgument if there is no such catheter.
+  void steer(std::size_t catheter, const CatheterInput& input);
+  /// Likewise a solid: velocity in m / s, turn in rad / s, as those of SolidScene::Move. Throws InvalidArgument, nothing changed,
+  /// if there is no such solid, a number is not finite, or it turns too far in a step (Simulation::add()).
+  void steer_solid(std::size_t solid, const Vec3& velocity, const Vec3& turn = {});
 
-  /// If ranks share the particles, each has its own; joined() makes them one.
-  [[nodiscard]] SimulationCheckpoint checkpoint() const;
-  /// Goes on from a checkpoint of a simulation made in the same way: every later step is then the same to the last bit.
-  /// Repeats those edits by events that this simulation has not made yet. The caller makes other edits before
-  /// (go_to()). Replaces all particles; vertices move to the checkpoint's time. Throws InvalidArgument if a state
-  /// does not hold in this environment, and if edits must be repeated but there are particles. The particles are
-  /// then unchanged; edits that it has repeated remain. Each rank takes its own particles out of a checkpoint, which
-  /// any number of ranks has saved.
+  [[nodiscard]] SimulationCheckpoint checkpoint() const;  ///< each rank has its own; joined() makes them one
+  /// Goes on from a checkpoint of a simulation made in the same way: every later step is then the same to the last bit. Repeats
+  /// those edits by events that this simulation has not made yet. The caller makes other edits before (go_to()). Replaces all
+  /// particles; vertices move to the checkpoint's time. Throws InvalidArgument if a state does not hold in this environment, and
+  /// if edits must be repeated but there are particles. The particles are then unchanged; edits that it has repeated remain. Each
+  /// rank takes its own particles out of a checkpoint, which any number of ranks has saved.
   void restore(const SimulationCheckpoint& saved);
   /// Moves the vertices to their positions after so many steps, to repeat edits there before restore(). Throws
   /// InvalidArgument if there are particles.
@@ -355,8 +358,7 @@ class Simulation {
   [[nodiscard]] const Catheter& catheter(std::size_t i) const;
   [[nodiscard]] const CatheterStep& catheter_step(std::size_t i) const;  ///< the last one
 
-  /// None if no solid has been added.
-  [[nodiscard]] const SolidSet* solids() const;
+  [[nodiscard]] const SolidSet* solids() const;        ///< none if no solid has been added
   [[nodiscard]] const SolidStep& solids_step() const;  ///< the last one
 
   [[nodiscard]] const SimulationTotals& totals() const;
@@ -377,8 +379,7 @@ class Simulation {
   [[nodiscard]] std::vector<SolidSummary> solid_summaries() const;
   /// At the particles' places and velocities now. The same bits for any threads and ranks. Cost: linear, parallel.
   [[nodiscard]] SimulationEnergy energy() const;
-  /// Checks all particles, those of bodies and catheters included.
-  [[nodiscard]] Audit audit() const;
+  [[nodiscard]] Audit audit() const;  ///< of all particles, those of bodies and catheters included
   /// The hash of every particle that there has been. Particles that left count with their last state.
   [[nodiscard]] StateHash state_hash() const;
 
@@ -390,11 +391,10 @@ class Simulation {
   std::unique_ptr<Parts> parts_;
 };
 
-/// Adds particles at random points of the free cells, of equal likelihood by volume (in the plane by area). A
-/// particle's point depends on the seed and its index in the set alone. An empty simulation of the same scene and seed
-/// adds the same ones. Throws InvalidArgument, nothing added, if no cell is free or the count is beyond 2^31. So do
-/// particles of another environment, or that have missed a move or an edit. Cost: linear in the cells, and about 1 us
-/// for each particle.
+/// Adds particles at random points of the free cells, of equal likelihood by volume (in the plane by area). A particle's point
+/// depends on the seed and its index in the set alone. An empty simulation of the same scene and seed adds the same ones. Throws
+/// InvalidArgument, nothing added, if no cell is free or the count is beyond 2^31. So do particles of another environment, or
+/// that have missed a move or an edit. Cost: linear in the cells, and about 1 us for each particle.
 void add_random(Environment& environment, Particles& particles, std::size_t count, std::uint64_t seed = 1);
 
 }  // namespace dartcast

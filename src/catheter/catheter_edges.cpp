@@ -224,4 +224,6 @@ MovePartner& CatheterMoves::prepare(Catheter& catheter) {
   return *catheter.impl_;
 }
 
+void CatheterMoves::check(const Catheter& catheter, const CatheterInput& input) { catheter.impl_->check(input); }
+
 }  // namespace dartcast

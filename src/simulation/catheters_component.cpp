@@ -29,8 +29,17 @@ CatheterInput input_at(const CatheterScene& scene, double begin, double dt) {
 void CathetersComponent::add(const CatheterScene& scene) {
   with_name("catheter", scene.name, [&] { catheters_.emplace_back(environment_, scene.options); });
   scenes_.push_back(scene);
+  steered_.emplace_back();
   last_.emplace_back();
   totals_.emplace_back();
+}
+
+void CathetersComponent::steer(std::size_t i, const CatheterInput& input) {
+  if (i >= catheters_.size())
+    throw InvalidArgument(
+        fmt::format("simulation: there is no catheter {} to steer: it has {}, counted from 0", i, catheters_.size()));
+  CatheterMoves::check(catheters_[i], input);
+  steered_[i] = input;
 }
 
 std::vector<MovePartner*> CathetersComponent::partners() {
@@ -43,7 +52,7 @@ std::vector<MovePartner*> CathetersComponent::partners() {
 
 void CathetersComponent::step(double begin) {
   for (std::size_t i = 0; i < catheters_.size(); ++i) {
-    const CatheterInput input = input_at(scenes_[i], begin, dt_);
+    const CatheterInput input = steered_[i] ? *steered_[i] : input_at(scenes_[i], begin, dt_);
     const CatheterStep& done = last_[i] = catheters_[i].step(input);
     totals_[i].worst_segment = std::max(totals_[i].worst_segment, done.worst_segment);
     totals_[i].refused += std::abs(input.push - done.pushed);

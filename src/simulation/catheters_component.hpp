@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,6 +21,8 @@ class CathetersComponent final : public SimulationComponent {
 
   /// Throws Error that names the catheter if its entry is not in the lumen.
   void add(const CatheterScene& scene);
+
+  void steer(std::size_t i, const CatheterInput& input);
 
   /// Those with edges, each for one joint move.
   [[nodiscard]] std::vector<MovePartner*> partners();
@@ -43,7 +46,8 @@ class CathetersComponent final : public SimulationComponent {
   Environment& environment_;
   double dt_;
   std::vector<CatheterScene> scenes_;
-  std::deque<Catheter> catheters_;  // they cannot be moved
+  std::vector<std::optional<CatheterInput>> steered_;  // by hand
+  std::deque<Catheter> catheters_;                     // they cannot be moved
   std::vector<CatheterStep> last_;
   std::vector<CatheterTotals> totals_;
 };

@@ -234,4 +234,16 @@ void Deformation::add_later(double time, std::span<Vec3> out) const {
   }
 }
 
+std::vector<Vec3> pull_around(std::span<const Vec3> positions, const Vec3& at, const Vec3& by, double reach) {
+  if (!is_finite(at) || !is_finite(by) || !(reach > 0.0) || !std::isfinite(reach))
+    throw InvalidArgument("deformation: the place and the way of a pull must be finite, and its reach positive");
+  std::vector<Vec3> pull(positions.size());
+  for (std::size_t i = 0; i < pull.size(); ++i) {
+    const Vec3 d = positions[i] - at;
+    const double share = dot(d, d) / (reach * reach);
+    if (share < 1.0) pull[i] = by * ((1.0 - share) * (1.0 - share));
+  }
+  return pull;
+}
+
 }  // namespace dartcast

@@ -147,6 +147,12 @@ void Simulation::pull(std::span<const Vec3> displacement, double duration) {
   parts_->motion.pull(displacement, duration);
 }
 
+void Simulation::steer(std::size_t catheter, const CatheterInput& input) { parts_->catheters.steer(catheter, input); }
+
+void Simulation::steer_solid(std::size_t solid, const Vec3& velocity, const Vec3& turn) {
+  parts_->solids.steer(solid, velocity, turn);
+}
+
 void Simulation::set_law(ParticleLaw law) { parts_->particles.aiming().set_law(std::move(law)); }
 
 void Simulation::add_inlet(Patch patch, double rate, const Vec3& velocity, double radius,

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "dartcast/error.hpp"
@@ -111,18 +112,38 @@ std::vector<std::uint32_t> SolidsComponent::met_by(const SolidScene& scene) cons
   return met;
 }
 
-void SolidsComponent::check_turns(const Tool& tool) const {
+// How many slices a step with this turn takes.
+double SolidsComponent::slices(const Tool& tool, const Vec3& turn) const {
   const double arm = arm_of(tool.mesh, tool.scene.pivot);
+  const double angle = norm(turn) * dt_;
+  return angle == 0.0 || arm == 0.0 ? 0.0 : slices_of(bend_of(angle, arm), tool.separation);
+}
+
+void SolidsComponent::check_turns(const Tool& tool) const {
   for (std::size_t i = 0; i < tool.scene.moves.size(); ++i) {
-    const double angle = norm(tool.scene.moves[i].turn) * dt_;
-    if (angle == 0.0 || arm == 0.0) continue;
-    const double slices = slices_of(bend_of(angle, arm), tool.separation);
-    if (!(slices <= max_slices))
+    const Vec3& turn = tool.scene.moves[i].turn;
+    if (!(slices(tool, turn) <= max_slices))
       throw InvalidArgument(fmt::format(
           "its move {} turns it by {} rad in a step, which takes {} slices; {} is the limit: make dt smaller, "
           "or turn more slowly",
-          i + 1, angle, slices, max_slices));
+          i + 1, norm(turn) * dt_, slices(tool, turn), max_slices));
   }
+}
+
+void SolidsComponent::steer(std::size_t solid, const Vec3& velocity, const Vec3& turn) {
+  if (solid >= tools_.size())
+    throw InvalidArgument(
+        fmt::format("simulation: there is no solid {} to steer: it has {}, counted from 0", solid, tools_.size()));
+  Tool& tool = tools_[solid];
+  if (!is_finite(velocity) || !is_finite(turn))
+    throw InvalidArgument("simulation: the velocity and the turn of a steered solid must be finite");
+  if (!(slices(tool, turn) <= max_slices))
+    throw InvalidArgument(
+        fmt::format("simulation: the solid turns by {} rad in a step, which takes {} slices; {} is the "
+                    "limit: turn more slowly",
+                    norm(turn) * dt_, slices(tool, turn), max_slices));
+  tool.scene.moves = {{std::numeric_limits<double>::infinity(), velocity, turn}};
+  tool.steered = true;
 }
 
 // Gives each tool its way of the step, and the set the way of all.
@@ -141,11 +162,12 @@ SolidWay SolidsComponent::way(double begin) {
   return all;
 }
 
-// One that turns at any time keeps its separation in all steps: so it has the room when it turns.
+// One that turns at any time, or is steered, keeps its separation in all steps: so it has the room when it turns.
 bool SolidsComponent::turns(const Tool& tool) {
   const auto& moves = tool.scene.moves;
   return tool.separation > 0.0 &&
-         std::any_of(moves.begin(), moves.end(), [](const SolidScene::Move& m) { return m.turn != Vec3{}; });
+         (tool.steered ||
+          std::any_of(moves.begin(), moves.end(), [](const SolidScene::Move& m) { return m.turn != Vec3{}; }));
 }
 
 SolidArc SolidsComponent::arc_of(const Tool& tool) {

@@ -28,6 +28,7 @@ class SolidsComponent final : public SimulationComponent {
 
   /// Throws Error that names the solid: its shape is a file or has a defect, or its place is refused.
   void add(const SolidScene& scene);
+  void steer(std::size_t solid, const Vec3& velocity, const Vec3& turn);
   /// Moves the environment to these positions, as far as the solids and these partners let it. They all move with it:
   /// the solids from the time `begin` on.
   void move_with(double begin, std::span<const Vec3> positions, std::vector<MovePartner*> partners);
@@ -55,6 +56,7 @@ class SolidsComponent final : public SimulationComponent {
     RigidPose wanted;         // where it should be
     RigidWay way;             // of the step
     double separation = 0.0;  // kept from walls if it turns
+    bool steered = false;     // by hand, by its one move
     std::uint64_t contacts = 0;
     std::uint64_t stopped = 0;
 
@@ -69,6 +71,7 @@ class SolidsComponent final : public SimulationComponent {
   void add_named(const SolidScene& scene);
   [[nodiscard]] std::vector<std::uint32_t> met_by(const SolidScene& scene) const;
   void check_turns(const Tool& tool) const;
+  [[nodiscard]] double slices(const Tool& tool, const Vec3& turn) const;
   [[nodiscard]] SolidWay way(double begin);
   [[nodiscard]] static bool turns(const Tool& tool);
   [[nodiscard]] static SolidArc arc_of(const Tool& tool);
