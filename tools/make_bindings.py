@@ -26,7 +26,7 @@ BY_HAND = set("""
     PeriodicCrossing PlaneCrossing PlanePassage RayCells RayHit ReplayResult SimplexId SolidAudit SolidCheckpoint SolidContact
     SolidMeeting SolidMesh SolidPlacement SolidStep SphereOverlap SphereReport Stars Statistics SteinerPoints StepReplay
     StepReport StoppedParticle Subdivided Subdivision SurfaceReport SurfaceTrace TalliedParticles Threads TouchedFaces Trace
-    Transaction UpdateReport Vec3 VelocityGradient
+    Transaction UpdateReport Vec3 VelocityGradient WallTriangles
     """.split())
 # Members that are arrays or objects of Python, which python/src binds.
 MEMBERS_BY_HAND = {"BodiesStep::edges", "ReadOptions::on_stage", "RunOptions::on_stage", "RunOptions::ranks",
@@ -74,7 +74,7 @@ FUNCTIONS = """
     cells_of_region check_mesh check_surface check_threads decompose divide_into_simplices draft_of edge_orbit
     face_orbit filter_applies generate_bar has_parts histogram_text inner_walls is_mass is_radius is_surface_file
     kind_of load_scene_files max_threads merge_cells merge_edges merge_faces mesh_endings mesh_part mesh_surfaces
-    open_faces overlapping_clusters parse_scene partition plane_bound_holds plane_filter_applies plane_through
+    open_faces overlapping_clusters parse_scene partition plane_bound_holds plane_filter_applies plane_through pull_around
     read_mesh_part read_scene read_surface read_valid_mesh remove_walls repair report_file sample_solid
     sample_surface sample_volume select_free_regions select_free_values select_patches select_walls set_walls sew
     solid_of_cells solid_of_polyline split_by_plane split_edge split_face summary_json summary_text surface_endings
@@ -190,7 +190,7 @@ CLASSES = {
     "SharedParticles": {"property": "size width ids"},
     "SharedEnvironment": {"method": "move"},
     "Simulation": {"method": "set_statistics add_body set_events set_remeshing set_adaptive_subdivision repair adapt step "
-        "checkpoint restore go_to",
+        "checkpoint restore go_to steer steer_solid",
         "long_method": "totals_of_all alive body_summaries solid_summaries catheter_summaries energy audit "
         "state_hash",
         "property": "particles ids velocities statuses contact_counts radii diameters densities "

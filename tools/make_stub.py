@@ -67,7 +67,7 @@ _SurfaceRespond = Callable[[SurfaceContact], Union[AfterSurfaceContact, Vector, 
 MODULES = {
     "predicates": ("Exact signs of determinants, and the bounds of numbers.", "dynamics predicates validity"),
     "topology": ("Maps and complexes, and their edits.", "cell_complex cell_shape combinatorial_map complex_edit cutting "
-                 "map_edits particle_state remeshing surface"),
+                 "map_edits particle_state remeshing surface walls"),
     "formats": ("Files of meshes, scenes and runs, and the scenes in them.", "decompose generators mesh_check mesh_data "
                 "mesh_files mesh_part mesh_selection plan report run scene scene_file statistics_files trajectory"),
     "records": ("Options of options, and results of calls.", ""),

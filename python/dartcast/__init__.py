@@ -17,7 +17,7 @@ from ._core import (
     generate_octahedra as generate_octahedra, generate_rectangle as generate_rectangle,
     generate_vessel as generate_vessel, InUse as InUse, InvalidArgument as InvalidArgument,
     InvalidMesh as InvalidMesh, Kind as Kind, ligature as ligature, MeshData as MeshData, Particles as Particles,
-    ParticleStatus as ParticleStatus, Place as Place, read_mesh as read_mesh, reconnect as reconnect,
+    ParticleStatus as ParticleStatus, Place as Place, pull_around as pull_around, read_mesh as read_mesh, reconnect as reconnect,
     Reflect as Reflect, reflected as reflected, respond_with as respond_with, sample_solid as sample_solid,
     sample_surface as sample_surface, sample_volume as sample_volume, SharedEnvironment as SharedEnvironment,
     SharedParticles as SharedParticles, Simulation as Simulation, SimulationOptions as SimulationOptions,

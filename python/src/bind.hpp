@@ -8,7 +8,7 @@
 // clang-format off
 #define DARTCAST_PARTS(PART) PART(errors) PART(records) PART(mesh_data) PART(mesh_check) PART(mesh_files) \
   PART(mesh_selection) PART(generators) PART(predicates) PART(cell_shape) \
-  PART(combinatorial_map) PART(map_edits) PART(cell_complex) PART(complex_edit) PART(cutting) PART(remeshing) \
+  PART(combinatorial_map) PART(map_edits) PART(cell_complex) PART(walls) PART(complex_edit) PART(cutting) PART(remeshing) \
   PART(validity) PART(particle_state) PART(step) PART(response) PART(environment) PART(cell_tally) PART(audit) \
   PART(shared_environment) PART(spheres) PART(trajectory) PART(deformation) PART(vector_field) PART(forces) \
   PART(surface) PART(solids) PART(bodies) PART(catheter) PART(statistics) PART(simulation) PART(events) \

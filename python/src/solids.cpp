@@ -33,13 +33,6 @@ std::vector<std::array<std::uint32_t, N>> rows_of_numbers(const py::object& give
   return rows;
 }
 
-template <std::size_t N>
-py::array_t<std::uint32_t> array_of_rows(const std::vector<std::array<std::uint32_t, N>>& rows) {
-  py::array_t<std::uint32_t> made({static_cast<py::ssize_t>(rows.size()), static_cast<py::ssize_t>(N)});
-  for (std::size_t i = 0; i < rows.size(); ++i) std::copy(rows[i].begin(), rows[i].end(), made.mutable_data() + i * N);
-  return made;
-}
-
 SolidMesh make_mesh(const Typed<"Points">& points, const Typed<"Integers | Sequence[Sequence[int]] | None">& edges,
                     const Typed<"Integers | Sequence[Sequence[int]] | None">& triangles) {
   const auto x = vectors(points, "points");

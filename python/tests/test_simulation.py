@@ -101,6 +101,22 @@ def test_events_cut_while_particles_flow() -> None:
     assert simulation.audit().failed == 0
 
 
+def test_a_steered_catheter_goes_as_its_input_says() -> None:
+    simulation = dartcast.Simulation(dartcast.Environment(dartcast.generate_vessel()), dartcast.SimulationOptions(dt=1e-3))
+    options = dartcast.CatheterOptions(length=0.03, spacing=1e-3, entry=[0.0, -0.006376, -0.026761], direction=[0.0, 0.472, 0.882])
+    simulation.add(dartcast.formats.CatheterScene("steered", options))
+    for push in (2e-4, 0.0, -1e-4):
+        simulation.steer(0, dartcast.CatheterInput(push=push))
+        before = simulation.catheter(0).inserted
+        for _ in range(5):
+            simulation.step()
+        assert simulation.catheter(0).inserted - before == pytest.approx(5 * push)
+    with pytest.raises(dartcast.InvalidArgument, match="no catheter 1 to steer"):
+        simulation.steer(1, dartcast.CatheterInput())
+    with pytest.raises(dartcast.InvalidArgument, match="turn must be between"):
+        simulation.steer(0, dartcast.CatheterInput(turn=7.0))
+
+
 def test_setters_refuse_what_is_out_of_range() -> None:
     simulation = bar()
     simulation.add_random(5, [1.0, 2.0, 3.0])

@@ -9,6 +9,8 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -60,6 +62,14 @@ pybind11::array_t<T> array_of(std::vector<T>&& values) {
 template <class T>
 pybind11::array_t<T> array_of(std::span<const T> values) {
   return pybind11::array_t<T>(static_cast<pybind11::ssize_t>(values.size()), values.data());
+}
+/// A fresh array (n, N).
+template <std::size_t N>
+pybind11::array_t<std::uint32_t> array_of_rows(const std::vector<std::array<std::uint32_t, N>>& rows) {
+  pybind11::array_t<std::uint32_t> made(
+      {static_cast<pybind11::ssize_t>(rows.size()), static_cast<pybind11::ssize_t>(N)});
+  for (std::size_t i = 0; i < rows.size(); ++i) std::copy(rows[i].begin(), rows[i].end(), made.mutable_data() + i * N);
+  return made;
 }
 /// The array, made read-only: for attributes.
 template <class Array>

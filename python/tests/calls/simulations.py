@@ -57,6 +57,7 @@ def of_adding() -> Calls:
     def add_catheter() -> None:
         made = dc.Simulation(tube(), dc.SimulationOptions(dt=0.1))
         made.add(catheter)
+        made.steer(0, dc.CatheterInput(push=1e-4, turn=0.1))
         made.step()
         made.catheter(0).points()
         made.catheter_step(0)
@@ -67,6 +68,7 @@ def of_adding() -> Calls:
         line.moves = [dc.formats.SolidScene.Move(until=1.0, velocity=[0.0, 0.0, 0.1])]
         made = simulation()
         made.add(line)
+        made.steer_solid(0, [0.0, 0.1, 0.1])
         made.step()
         assert made.solids is not None and made.solids_step.made[0] == 1.0
         made.solids.audit()
@@ -129,6 +131,10 @@ def of_motion() -> Calls:
             lambda: own.set_deformation(dc.Deformation([], np.zeros((3, 3))))),
         "Simulation.pull": changed(lambda s: s.pull(pull, 0.2)),
         "Simulation.pull: refused": refused(lambda: own.pull(pull[1:], 0.2)),
+        "Simulation.steer: refused": refused(lambda: own.steer(0, dc.CatheterInput(push=1e-3))),
+        "Simulation.steer_solid: refused": refused(lambda: own.steer_solid(0, [0.0, 0.0, 1.0])),
+        "pull_around": lambda: dc.pull_around(own.environment.positions, [0.4] * 3, [0.0, 0.0, 0.1], 0.3),
+        "pull_around: refused": refused(lambda: dc.pull_around(own.environment.positions, [0.4] * 3, [0.0, 0.0, 0.1], 0.0)),
     }
 
 

@@ -250,12 +250,20 @@ def of_complexes() -> Calls:
     simplex = (first(c.map), 0)
     rest, later = c.positions.copy(), c.positions * 2.0
     moving = complex_of()
+
+    def see_walls() -> None:
+        walls = dc.topology.wall_triangles(c)
+        assert len(walls.triangles) == len(walls.faces) > 0
+        assert walls.points(c.positions).shape == (len(walls.vertices), 3)
+
     table: Calls = {}
     for name in ("vertices", "corners", "previous_corners"):
         table[f"CellComplex.{name}"] = lambda f=getattr(c, name): f(simplex)
         table[f"CellComplex.{name}: refused"] = refused(lambda f=getattr(c, name): f((simplex[0], 60)))
     return table | {
         "CellComplex": lambda: dc.topology.CellComplex(mesh, threads=1),
+        "wall_triangles": see_walls,
+        "WallTriangles.points: refused": refused(lambda: dc.topology.wall_triangles(c).points(np.zeros((2, 3)))),
         "CellComplex: refused": refused(lambda: dc.topology.CellComplex(dc.MeshData())),
         "CellComplex.move": lambda: (moving.move(later), moving.move(rest)),
         "CellComplex.move: refused": refused(lambda: moving.move(rest[1:])),
