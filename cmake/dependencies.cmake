@@ -1,14 +1,26 @@
 # What the libraries need to be built. Users of their headers need none of these.
-find_package(Threads REQUIRED)
-find_package(Boost 1.74 REQUIRED)  # headers only: Multiprecision, for exact arithmetic
-find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(fmt 9 REQUIRED)
+if(EMSCRIPTEN)  # headers alone, from cmake/wasm.cmake; one thread
+  foreach(name IN ITEMS Boost::headers fmt::fmt Threads::Threads nlohmann_json::nlohmann_json tomlplusplus::tomlplusplus
+                        ZLIB::ZLIB EXPAT::EXPAT Eigen3::Eigen)
+    add_library(${name} INTERFACE IMPORTED)
+    target_include_directories(${name} INTERFACE ${DARTCAST_WASM_HEADERS})
+  endforeach()
+  target_include_directories(Eigen3::Eigen INTERFACE ${DARTCAST_WASM_HEADERS}/eigen3)
+  target_compile_definitions(fmt::fmt INTERFACE FMT_HEADER_ONLY)
+  target_compile_definitions(tomlplusplus::tomlplusplus INTERFACE TOML_HEADER_ONLY=1)
+  set(LZ4_INCLUDE_DIR ${DARTCAST_WASM_HEADERS})
+else()
+  find_package(Threads REQUIRED)
+  find_package(Boost 1.74 REQUIRED)  # headers only: Multiprecision, for exact arithmetic
+  find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+  find_package(fmt 9 REQUIRED)
+endif()
 set(DARTCAST_THREAD_LIBRARIES Threads::Threads)
 if(DARTCAST_THREADS STREQUAL "tbb")
   find_package(TBB REQUIRED)
   list(APPEND DARTCAST_THREAD_LIBRARIES TBB::tbb)
 endif()
-if(DARTCAST_IO)
+if(DARTCAST_IO AND NOT EMSCRIPTEN)
   find_package(nlohmann_json 3.11 REQUIRED)
   find_package(tomlplusplus 3.3 REQUIRED)
   find_package(ZLIB REQUIRED)

@@ -5,6 +5,9 @@ set(core_rooms base predicates mesh generators topology complex editing surface 
 set(simulation_rooms dynamics spheres solids bodies catheter simulation)
 set(mpi_rooms distributed)
 set(io_rooms formats meshing scene report output)
+if(EMSCRIPTEN)  # what reads scenes and meshes; js/src/xml_tags.cpp in place of expat
+  list(REMOVE_ITEM io_rooms report output)
+endif()
 # Public headers; core has all others.
 set(simulation_headers dynamics spheres solids bodies catheter simulation plan deformation vector_field forces events scene statistics)
 set(mpi_headers mpi_ranks)
@@ -18,6 +21,9 @@ function(add_dartcast_library name)
     file(GLOB_RECURSE found CONFIGURE_DEPENDS src/${room}/*.cpp)
     list(APPEND sources ${found})
   endforeach()
+  if(EMSCRIPTEN)
+    list(FILTER sources EXCLUDE REGEX "/formats/xml_tags\\.cpp$")
+  endif()
   list(TRANSFORM ${name}_headers REPLACE "(.+)" "include/dartcast/\\1.hpp" OUTPUT_VARIABLE headers)
   add_library(${target} ${sources})
   add_library(dartcast::${name} ALIAS ${target})
@@ -33,6 +39,9 @@ function(add_dartcast_library name)
                         SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} INSTALL_RPATH "$ORIGIN")
   if(NOT DARTCAST_SANITIZE AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
     target_link_options(${target} PRIVATE LINKER:-z,defs)  # a library that uses what is above it does not link
+  endif()
+  if(EMSCRIPTEN)
+    target_compile_options(${target} PRIVATE -O2 -fno-unroll-loops -fno-vectorize -fno-slp-vectorize)
   endif()
   # Where CMAKE_UNITY_BUILD is set (in all presets for tests: half of the time), the files of a room are compiled as one.
   # Small rooms above the core share a unit, since headers take a third of its time. In the core this would cost a step at
@@ -55,6 +64,11 @@ function(add_dartcast_library name)
     # set's within the file alone; g++ 12 warns of that without naming a place.
     if(source MATCHES "_(avx2|portable)\\.cpp$")
       set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON COMPILE_OPTIONS -Wno-psabi)
+    endif()
+    # A page loads the engine: it is fast where steps spend their time, and else small.
+    set(cold "_avx2|/(tally_step|trace|pausing_step|cell_tally|travelling_step|part_steps)\\.cpp")
+    if(EMSCRIPTEN AND source MATCHES "/(tracking|predicates)/|_portable\\.cpp$" AND NOT source MATCHES "${cold}")
+      set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS "-O3;-funroll-loops;-fvectorize;-fslp-vectorize")
     endif()
   endforeach()
 endfunction()
@@ -80,11 +94,13 @@ if(DARTCAST_IO)
     target_link_libraries(dartcast_io PRIVATE ${HDF5_LIBRARY})
     target_compile_definitions(dartcast_io PRIVATE DARTCAST_HDF5)
   endif()
-  if(CMAKE_BUILD_TYPE STREQUAL "Release")
+  if(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT EMSCRIPTEN)
     target_compile_options(dartcast_io PRIVATE -O1)  # more takes half as long again to compile, and no run is faster
   endif()
   target_link_libraries(dartcast_io PUBLIC dartcast_simulation)
-  include(cmake/viewer.cmake)
+  if(NOT EMSCRIPTEN)
+    include(cmake/viewer.cmake)
+  endif()
 endif()
 
 # Not in dartcast::dartcast: programs that run alone need no MPI.

@@ -141,7 +141,11 @@ struct Blocks {
 };
 
 bool is_lz4(const VtuArray& array, const VtuEncoding& encoding) {
+#ifdef __EMSCRIPTEN__
+  constexpr bool lz4 = false;
+#else
   const bool lz4 = encoding.compressor == "vtkLZ4DataCompressor";
+#endif
   if (!lz4 && encoding.compressor != "vtkZLibDataCompressor")
     fail_array(array, fmt::format("the compressor '{}' is not supported: write it with vtkZLibDataCompressor",
                                   encoding.compressor.substr(0, 40)));
