@@ -134,7 +134,8 @@ void Model::add_element(int type, std::span<const std::uint64_t> numbers, std::i
     return;
   }
   const std::int32_t group_before = std::exchange(last_group_, physical_tag);
-  if (repeats_elements && type == last_type_ && physical_tag != group_before && std::equal(numbers.begin(), numbers.end(), last_.begin(), last_.end())) {
+  if (repeats_elements && type == last_type_ && physical_tag != group_before &&
+      std::equal(numbers.begin(), numbers.end(), last_.begin(), last_.end())) {
     repeated.add(place);
     return;
   }

@@ -403,7 +403,8 @@ class VesselBuilder {
           // Along the line that the mesh draws through the point, so that neither wall nor widening is crossed.
           const Vec3 along = mesh_.points[after[v]] - mesh_.points[before[v]];
           const Vec3 w = along * (s.speed[v] / dot(along, s.t));
-          std::copy_n(std::array{w.x, w.y, w.z}.begin(), 3, velocity.values.begin() + 3 * static_cast<std::ptrdiff_t>(ids[i][v]));
+          std::copy_n(std::array{w.x, w.y, w.z}.begin(), 3,
+                      velocity.values.begin() + 3 * static_cast<std::ptrdiff_t>(ids[i][v]));
         }
       }
     }
