@@ -190,7 +190,7 @@ CLASSES = {
     "SharedParticles": {"property": "size width ids"},
     "SharedEnvironment": {"method": "move"},
     "Simulation": {"method": "set_statistics add_body set_events set_remeshing set_adaptive_subdivision repair adapt step "
-        "checkpoint restore go_to steer steer_solid",
+        "checkpoint restore go_to steer",
         "long_method": "totals_of_all alive body_summaries solid_summaries catheter_summaries energy audit "
         "state_hash",
         "property": "particles ids velocities statuses contact_counts radii diameters densities "

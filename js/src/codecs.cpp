@@ -2,11 +2,9 @@
 #include <lz4.h>
 #include <zlib.h>
 
-#include <algorithm>
 #include <boost/beast/zlib/inflate_stream.hpp>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 namespace {
 
@@ -31,23 +29,18 @@ int uncompress(Bytef* out, uLongf* out_size, const Bytef* packed, uLong size) {
     return Z_DATA_ERROR;
   boost::beast::zlib::z_params z;
   z.next_in = packed + head;
-  z.avail_in = size - head - tail;
-  std::vector<Bytef> unpacked(*out_size + 1);  // Boost reads the mark of the end only if there is room for more
-  z.next_out = unpacked.data();
-  z.avail_out = unpacked.size();
+  z.avail_in = size - head;  // Boost looks ahead, over the sum
+  z.next_out = out;
+  z.avail_out = *out_size;
   boost::beast::zlib::inflate_stream inflate;
   boost::beast::error_code error;
   inflate.write(z, boost::beast::zlib::Flush::finish, error);
   const Bytef* sum = packed + (size - tail);
   const std::uint32_t wanted = (std::uint32_t{sum[0]} << 24U) | (std::uint32_t{sum[1]} << 16U) |
                                (std::uint32_t{sum[2]} << 8U) | std::uint32_t{sum[3]};
-  const std::size_t size_now = z.total_out;
-  if (error != boost::beast::zlib::error::end_of_stream || size_now > *out_size ||
-      wanted != adler32_of(unpacked.data(), size_now))
-    return Z_DATA_ERROR;
-  std::copy_n(unpacked.begin(), size_now, out);
-  *out_size = size_now;
-  return Z_OK;
+  *out_size = z.total_out;
+  const bool ended = error == boost::beast::zlib::error::end_of_stream;
+  return ended && wanted == adler32_of(out, z.total_out) ? Z_OK : Z_DATA_ERROR;
 }
 int compress2(Bytef* /*out*/, uLongf* /*out_size*/, const Bytef* /*bytes*/, uLong /*size*/, int /*level*/) {
   return Z_MEM_ERROR;

@@ -65,7 +65,7 @@ test("a refusal has the library's words, and changes nothing", () => {
   assert.throws(() => simulation.pull({at: [0, 0, 0], by: [0, 0, 0], reach: 0, duration: 1}), /reach positive/);
   assert.throws(() => new Simulation({...vessel, motion: {dt: 0}}), {message: "[motion] dt = 0: it must be more than 0"});
   assert.throws(() => new Simulation({...vessel, motion: {step: null}}), /motion.step: null cannot be in a scene/);
-  assert.throws(() => new Simulation("[motion]\ndt = -1"), /^Error: scene.toml:2: /);
+  assert.throws(() => new Simulation(`[environment]\ngenerator = "box"\n[motion]\ndt = -1`), /^Error: scene.toml:4: /);
   assert.equal(simulation.stateHash(), before);
 });
 

@@ -180,7 +180,14 @@ void bind_motion(Class& simulation) {
             const auto x = vectors(displacement, "displacement");
             change(self, [&](Simulation& s) { s.pull(x, duration); });
           },
-          about("Simulation::pull"));
+          about("Simulation::pull"))
+      .def(
+          "steer_solid",
+          [](Handle& self, std::size_t solid, const Vec3& velocity, const Vec3& turn) {
+            change(self, [&](Simulation& s) { s.steer_solid(solid, velocity, turn); });
+          },
+          py::arg("solid"), py::arg("velocity"), py::arg_v("turn", Vec3{}, "(0.0, 0.0, 0.0)"),
+          doc("Simulation::steer_solid"));
 }
 
 void bind_adding(Class& simulation) {

@@ -22,7 +22,7 @@ constexpr std::string_view xml_type() {
   if constexpr (std::same_as<T, double> || std::same_as<T, Vec3>) return "Float64";
   if constexpr (std::same_as<T, std::int64_t> || std::same_as<T, std::uint64_t>) return "Int64";
   if constexpr (std::same_as<T, std::int32_t>) return "Int32";
-  if constexpr (std::same_as<T, std::uint32_t>) return "UInt32";
+  if constexpr (std::unsigned_integral<T> && sizeof(T) == 4) return "UInt32";  // sizes of 32 bits, too
   if constexpr (std::same_as<T, std::uint8_t>) return "UInt8";
   if constexpr (std::same_as<T, char>) return "String";
 }
