@@ -21,7 +21,7 @@ def of_meshes() -> dict[str, object]:
     moved[0] = 0.9
     c.move(moved)
     return {"MeshData": mesh, "CellComplex": c, "CombinatorialMap": c.map, "CellView": c.map.view(scenes.first(c.map)),
-            "Shape": c.map.shape(scenes.first(c.map))}
+            "Shape": c.map.shape(scenes.first(c.map)), "WallTriangles": dc.topology.wall_triangles(c)}
 
 
 def of_edits() -> dict[str, object]:
