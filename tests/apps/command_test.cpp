@@ -101,7 +101,7 @@ TEST_F(Command, BenchIsAProgramOfItsOwn) {
 }
 
 TEST_F(Command, WrongUsageIsTwo) {
-  expect_failure("", 2, "run, report, view, check, info, convert");
+  expect_failure("", 2, "run, report, view, live, check, info, convert");
   expect_failure("fly", 2, "fly");
   expect_failure("run", 2, "SCENE");
   expect_failure("run a.toml --fast", 2, "--fast");
