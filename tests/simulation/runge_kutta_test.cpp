@@ -201,7 +201,7 @@ TEST(RungeKutta, InSpaceAUniformFlowGoesStraightThroughAMeshThatTurns) {
 class Crowd {
  public:
   Crowd(MeshData mesh, FieldPlace place, FieldFrame frame, Random& random)
-      : random_(random), place_(place), planar_(mesh.dimension() == 2), mesh_(std::move(mesh)), environment_(mesh_) {
+      : random_(random), planar_(mesh.dimension() == 2), mesh_(std::move(mesh)), environment_(mesh_) {
     const std::size_t values = place == FieldPlace::points ? mesh_.points.size() : mesh_.cell_count();
     std::vector<std::vector<Vec3>> samples(3);
     for (std::vector<Vec3>& sample : samples) {
@@ -251,7 +251,6 @@ class Crowd {
   }
 
   Random& random_;
-  FieldPlace place_;
   bool planar_;
   MeshData mesh_;
   Environment environment_;
