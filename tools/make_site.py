@@ -22,6 +22,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 
 LINK = re.compile(r"(!?\[[^\]]*\])\(([^)\s#]+)((?:#[^)\s]*)?)\)")
+LINK_AROUND_PICTURE = re.compile(r"(\)\])\(([^)#\s]+)((?:#[^)]*)?)\)")  # its end
 SECTION = re.compile(r"# --- (\w+\.hpp)\n(.*?)# --- end of ", re.DOTALL)
 PROJECT_PAGES = {"README.md": "readme.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md"}
 
@@ -60,7 +61,7 @@ def led_to_pages(text: str, origin: pathlib.Path, place: pathlib.PurePosixPath, 
         return f"{label.strip('![]')} (`{path.relative_to(ROOT).as_posix()}`)"
 
     code = re.split(r"(```.*?```)", text, flags=re.DOTALL)
-    return "".join(part if i % 2 else LINK.sub(led, part) for i, part in enumerate(code))
+    return "".join(part if i % 2 else LINK_AROUND_PICTURE.sub(led, LINK.sub(led, part)) for i, part in enumerate(code))
 
 
 def copy_documents(out: pathlib.Path, examples: dict[pathlib.Path, str]) -> None:

@@ -17,7 +17,7 @@ void number_vertices(WallTriangles& walls, std::size_t vertex_count) {
   for (std::uint32_t v = 0; v < vertex_count; ++v) {
     if (place[v] == unused) continue;
     place[v] = static_cast<std::uint32_t>(walls.vertices.size());
-    walls.vertices.push_back(Vertex{v});
+    walls.vertices.emplace_back(v);
   }
   for (auto& triangle : walls.triangles) {
     for (std::uint32_t& v : triangle) v = place[v];

@@ -18,12 +18,12 @@ struct FlowScene {
   const Vec3* values = nullptr;  ///< of the field
   const Vec3* rest = nullptr;    ///< positions at rest; null in space's frame
   bool planar = false;
-  bool moving = false;    ///< particles still have positions relative to `before`
-  double per_move = 0.0;  ///< 1 / s: the inverse of the time of the last move
-  double dt = 0.0;        ///< s
-  bool drags = false;     ///< otherwise a particle has the velocity of the flow
-  double lost = 0.0;      ///< share of the velocity relative to the flow that drag takes in this time
-  Vec3 terminal = {};     ///< velocity relative to the flow that gravity and drag lead to
+  bool moving = false;       ///< particles still have positions relative to `before`
+  double per_move = 0.0;     ///< 1 / s: the inverse of the time of the last move
+  double dt = 0.0;           ///< s
+  bool drags = false;        ///< otherwise a particle has the velocity of the flow
+  double lost = 0.0;         ///< share of the velocity relative to the flow that drag takes in this time
+  Vec3 terminal = {};        ///< velocity relative to the flow that gravity and drag lead to
   const Vec3* at = nullptr;  ///< positions of vertices where find_flow() is to find the particles
 };
 

@@ -25,7 +25,7 @@ FAULTS = {
                                           "((value[0] > bound) & (value[1] > bound)) &",
                                           "((value[0] > -bound) & (value[1] > bound)) &"),
     "batch: -0 is not flushed": ("src/tracking/batch/batch_kernel.inl",
-                                 "(reinterpret_cast<Mask4>(numbers) == splat_bits(0))", "(m == 0.0)"),
+                                 "(bits_as<Mask4>(numbers) == splat_bits(0))", "(m == 0.0)"),
     "contacts: rounded places": ("src/tracking/step_run.hpp",
                                  "    if (w.at_end) return state_.put(w.simplex, contact.point);",
                                  "    return state_.put(w.at_end ? w.simplex : w.wall_simplex, contact.point);"),
