@@ -16,6 +16,7 @@
 namespace dartcast::detail::portable {
 namespace {
 
+// Types of vectors are named by typedef: an alias of a template drops the attribute.
 template <class T>
 struct RegisterPair {
   typedef T Half __attribute__((vector_size(16)));  // NOLINT(modernize-use-using)
